@@ -1,0 +1,210 @@
+! SPDX-License-Identifier: MIT
+!> Isotropic damage driven by strain (src/THEORY.md section 3).
+!!
+!! Order at a point: equivalent strain, kappa = max over time, D(kappa) that never decreases,
+!! stress = undamaged stress - D P(undamaged stress), where P takes the whole stress (`full`), its
+!! deviator (`deviatoric`) or its positive principal part (`tensile`).
+module talus_damage
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_deck
+  use talus_text, only: text_of
+  use talus_elastic, only: elastic_t, elastic_bilinear
+  implicit none
+  private
+  public :: damage_t, damage_prepare, damage_driver, damage_law, damage_advance
+  public :: damage_part, damage_dissipation, damage_stored
+
+  integer, parameter, public :: driver_none = 0, driver_energy = 1, driver_mazars = 2, &
+    driver_von_mises = 3, driver_plastic_strain = 4
+  integer, parameter, public :: damage_exponential = 1, damage_linear = 2, damage_mazars = 3
+  integer, parameter, public :: split_full = 1, split_deviatoric = 2, split_tensile = 3
+
+  !> Parameters of damage; those not needed by the switches are ignored.
+  type :: damage_t
+    integer :: driver = driver_none        !! one of driver_*; none switches damage off
+    integer :: law = damage_exponential    !! one of damage_*
+    integer :: split = split_full          !! one of split_*
+    real(dp) :: kappa_0 = 0.0_dp           !! equivalent strain where damage begins [-]
+    real(dp) :: kappa_f = 0.0_dp           !! strain scale of the exponential and linear laws [-]
+    real(dp) :: mazars_a = 0.0_dp          !! [-]
+    real(dp) :: mazars_b = 0.0_dp          !! [-]
+    real(dp) :: strength_ratio = 10.0_dp   !! compressive over tensile strength, von Mises driver
+    real(dp) :: maximum = 0.99_dp          !! cap of D [-], below 1
+    real(dp), private :: lame_over_e = 0.0_dp, shear_over_e = 0.0_dp !! lambda/E, 2 G/E [-]
+    real(dp), private :: vm_linear = 0.0_dp, vm_square = 0.0_dp, vm_j2 = 0.0_dp
+  end type damage_t
+
+contains
+
+  !> Check the parameters and prepare what depends on the elastic constants.
+  pure subroutine damage_prepare(damage, elastic, status)
+    type(damage_t), intent(inout) :: damage
+    type(elastic_t), intent(in) :: elastic   !! prepared
+    type(status_t), intent(inout) :: status  !! status_deck when out of range
+    real(dp) :: ratio, nu
+
+    if (damage%driver == driver_none) return
+    call check_ranges(damage, status)
+    damage%lame_over_e = elastic%lame/elastic%youngs_modulus
+    damage%shear_over_e = 2.0_dp*elastic%shear/elastic%youngs_modulus
+    ! Modified von Mises strain, de Vree et al. (1995).
+    ratio = damage%strength_ratio
+    nu = elastic%poisson_ratio
+    damage%vm_linear = (ratio - 1.0_dp)/(2.0_dp*ratio*(1.0_dp - 2.0_dp*nu))
+    damage%vm_square = damage%vm_linear**2
+    damage%vm_j2 = 3.0_dp/(ratio*(1.0_dp + nu)**2)
+  end subroutine damage_prepare
+
+  pure subroutine check_ranges(damage, status)
+    type(damage_t), intent(in) :: damage
+    type(status_t), intent(inout) :: status
+    real(dp) :: slope
+
+    if (.not. damage%kappa_0 > 0.0_dp) call status_set(status, status_deck, &
+      'kappa_0 must be positive, not '//text_of(damage%kappa_0))
+    if (.not. (damage%maximum >= 0.0_dp .and. damage%maximum < 1.0_dp)) call status_set(status, &
+      status_deck, 'maximum damage must lie in [0, 1), not '//text_of(damage%maximum))
+    if (damage%driver == driver_von_mises .and. .not. damage%strength_ratio >= 1.0_dp) &
+      call status_set(status, status_deck, 'strength_ratio must be at least 1, not ' &
+      //text_of(damage%strength_ratio))
+    if (damage%law == damage_mazars) then
+      if (.not. (damage%mazars_a > 0.0_dp .and. damage%mazars_b > 0.0_dp)) then
+        call status_set(status, status_deck, 'law = mazars needs mazars_a > 0 and mazars_b > 0')
+      else if (damage%kappa_0 > 0.0_dp) then
+        slope = 1.0_dp - damage%mazars_a + damage%mazars_a*damage%mazars_b*damage%kappa_0
+        if (slope < 0.0_dp) call status_set(status, status_deck, &
+          'law = mazars starts with falling damage: needs A (1 - B kappa_0) <= 1')
+      end if
+    else if (.not. damage%kappa_f > damage%kappa_0) then
+      call status_set(status, status_deck, 'kappa_f must exceed kappa_0')
+    end if
+  end subroutine check_ranges
+
+  !> Equivalent strain of a total strain, or the equivalent plastic strain.
+  pure real(dp) function damage_driver(damage, strain, eqps)
+    type(damage_t), intent(in) :: damage
+    real(dp), intent(in) :: strain(4) !! total strain [-], tension +
+    real(dp), intent(in) :: eqps      !! equivalent plastic strain [-]
+    real(dp) :: trace, squares, centre, radius, j2
+
+    select case (damage%driver)
+    case (driver_energy) ! sqrt(eps : C : eps / E), Simo & Ju (1987)
+      trace = strain(1) + strain(2) + strain(3)
+      squares = strain(1)**2 + strain(2)**2 + strain(3)**2 + 2.0_dp*strain(4)**2
+      damage_driver = sqrt(max(0.0_dp, damage%lame_over_e*trace*trace &
+        + damage%shear_over_e*squares))
+    case (driver_mazars) ! norm of the positive principal strains, Mazars (1986)
+      centre = 0.5_dp*(strain(1) + strain(2))
+      radius = sqrt((0.5_dp*(strain(1) - strain(2)))**2 + strain(4)**2)
+      damage_driver = sqrt(max(0.0_dp, centre + radius)**2 + max(0.0_dp, centre - radius)**2 &
+        + max(0.0_dp, strain(3))**2)
+    case (driver_von_mises)
+      trace = strain(1) + strain(2) + strain(3)
+      squares = strain(1)**2 + strain(2)**2 + strain(3)**2 + 2.0_dp*strain(4)**2
+      j2 = max(0.0_dp, 0.5_dp*(squares - trace*trace/3.0_dp))
+      damage_driver = damage%vm_linear*trace &
+        + sqrt(damage%vm_square*trace*trace + damage%vm_j2*j2)
+    case (driver_plastic_strain)
+      damage_driver = eqps
+    case default
+      damage_driver = 0.0_dp
+    end select
+  end function damage_driver
+
+  !> Damage of a history variable kappa, between 0 and the cap.
+  pure real(dp) function damage_law(damage, kappa) result(d)
+    type(damage_t), intent(in) :: damage
+    real(dp), intent(in) :: kappa !! largest equivalent strain so far [-]
+
+    d = 0.0_dp
+    if (kappa <= damage%kappa_0) return
+    select case (damage%law)
+    case (damage_exponential)
+      d = 1.0_dp - damage%kappa_0/kappa &
+        *exp(-(kappa - damage%kappa_0)/(damage%kappa_f - damage%kappa_0))
+    case (damage_linear)
+      d = damage%kappa_f*(kappa - damage%kappa_0)/(kappa*(damage%kappa_f - damage%kappa_0))
+    case (damage_mazars)
+      d = 1.0_dp - (1.0_dp - damage%mazars_a)*damage%kappa_0/kappa &
+        - damage%mazars_a*exp(-damage%mazars_b*(kappa - damage%kappa_0))
+    end select
+    d = min(max(d, 0.0_dp), damage%maximum)
+  end function damage_law
+
+  !> Raise kappa and D to the present equivalent strain; neither ever falls.
+  pure subroutine damage_advance(damage, strain, eqps, kappa, d)
+    type(damage_t), intent(in) :: damage
+    real(dp), intent(in) :: strain(4)  !! total strain [-], tension +
+    real(dp), intent(in) :: eqps       !! equivalent plastic strain [-]
+    real(dp), intent(inout) :: kappa   !! largest equivalent strain so far [-]
+    real(dp), intent(inout) :: d       !! damage [-]
+    real(dp) :: driver
+
+    driver = damage_driver(damage, strain, eqps)
+    if (driver <= kappa) return
+    kappa = driver
+    d = max(d, damage_law(damage, kappa))
+  end subroutine damage_advance
+
+  !> Degraded part P of the undamaged stress: the stress of the point is stress - D P.
+  pure subroutine damage_part(split, stress, part)
+    integer, intent(in) :: split       !! one of split_*
+    real(dp), intent(in) :: stress(4)  !! undamaged stress [Pa], tension +
+    real(dp), intent(out) :: part(4)   !! its degraded part [Pa]
+    real(dp) :: mean, centre, half, radius, upper, lower, ratio
+
+    select case (split)
+    case (split_deviatoric)
+      mean = (stress(1) + stress(2) + stress(3))/3.0_dp
+      part = [stress(1) - mean, stress(2) - mean, stress(3) - mean, stress(4)]
+    case (split_tensile)
+      centre = 0.5_dp*(stress(1) + stress(2))
+      half = 0.5_dp*(stress(1) - stress(2))
+      radius = sqrt(half*half + stress(4)*stress(4))
+      upper = 0.5_dp*max(0.0_dp, centre + radius)
+      lower = 0.5_dp*max(0.0_dp, centre - radius)
+      ratio = 0.0_dp
+      if (radius > 0.0_dp) ratio = (upper - lower)/radius
+      part = [upper + lower + ratio*half, upper + lower - ratio*half, &
+        max(0.0_dp, stress(3)), ratio*stress(4)]
+    case default
+      part = stress
+    end select
+  end subroutine damage_part
+
+  !> Energy released by damage over a step, per current volume [J/m3].
+  !!
+  !! The work 1/2 (sigma_old + sigma_new) : d(eps_e) of the damaged stress less the change of
+  !! 1/2 (s - D P(s)) : C^-1 : s is exactly 1/2 (D_new P_new : C^-1 : s_old - D_old P_old : C^-1 :
+  !! s_new), which tends to dD times the stored energy of the degraded part. With `full` and
+  !! `deviatoric` it vanishes while D stands still. The positive part of a stress has no
+  !! potential, so that `tensile` may store or release a little when principal axes turn.
+  pure real(dp) function damage_dissipation(damage, elastic, stress_old, d_old, stress_new, d_new)
+    type(damage_t), intent(in) :: damage
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: stress_old(4) !! undamaged stress before, turned with the step [Pa]
+    real(dp), intent(in) :: d_old         !! damage before [-]
+    real(dp), intent(in) :: stress_new(4) !! undamaged stress after [Pa]
+    real(dp), intent(in) :: d_new         !! damage after [-]
+    real(dp) :: part(4)
+
+    call damage_part(damage%split, stress_new, part)
+    damage_dissipation = d_new*elastic_bilinear(elastic, part, stress_old)
+    call damage_part(damage%split, stress_old, part)
+    damage_dissipation = 0.5_dp*(damage_dissipation &
+      - d_old*elastic_bilinear(elastic, part, stress_new))
+  end function damage_dissipation
+
+  !> Energy stored at a damaged point, 1/2 (s - D P(s)) : C^-1 : s [J/m3].
+  pure real(dp) function damage_stored(damage, elastic, stress, d)
+    type(damage_t), intent(in) :: damage
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: stress(4) !! undamaged stress s [Pa]
+    real(dp), intent(in) :: d         !! damage [-]
+    real(dp) :: part(4)
+
+    call damage_part(damage%split, stress, part)
+    part = stress - d*part
+    damage_stored = 0.5_dp*elastic_bilinear(elastic, part, stress)
+  end function damage_stored
+end module talus_damage

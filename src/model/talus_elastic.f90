@@ -1,0 +1,100 @@
+! SPDX-License-Identifier: MIT
+!> Isotropic linear elasticity in plane strain (src/THEORY.md section 3).
+module talus_elastic
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_deck
+  use talus_text, only: text_of
+  use talus_objective, only: piola_stress
+  implicit none
+  private
+  public :: elastic_t, elastic_prepare, elastic_add, elastic_energy, elastic_bilinear
+  public :: elastic_piola_tangent
+
+  type :: elastic_t
+    real(dp) :: youngs_modulus = 0.0_dp !! [Pa]
+    real(dp) :: poisson_ratio = 0.0_dp  !! [-]
+    real(dp) :: shear = 0.0_dp          !! G [Pa], set by elastic_prepare
+    real(dp) :: bulk = 0.0_dp           !! K [Pa], set by elastic_prepare
+    real(dp) :: lame = 0.0_dp           !! K - 2G/3 [Pa], set by elastic_prepare
+  end type elastic_t
+
+contains
+
+  !> Derive the moduli from Young's modulus and Poisson's ratio.
+  pure subroutine elastic_prepare(elastic, status)
+    type(elastic_t), intent(inout) :: elastic  !! both input components set
+    type(status_t), intent(inout) :: status    !! status_deck when out of range
+
+    if (.not. elastic%youngs_modulus > 0.0_dp) then
+      call status_set(status, status_deck, 'youngs_modulus must be positive, not ' &
+        //text_of(elastic%youngs_modulus))
+    else if (.not. (elastic%poisson_ratio > -1.0_dp .and. elastic%poisson_ratio < 0.5_dp)) then
+      call status_set(status, status_deck, 'poisson_ratio must lie in (-1, 0.5), not ' &
+        //text_of(elastic%poisson_ratio))
+    else
+      elastic%shear = elastic%youngs_modulus/(2.0_dp*(1.0_dp + elastic%poisson_ratio))
+      elastic%bulk = elastic%youngs_modulus/(3.0_dp*(1.0_dp - 2.0_dp*elastic%poisson_ratio))
+      elastic%lame = elastic%bulk - elastic%shear*2.0_dp/3.0_dp
+    end if
+  end subroutine elastic_prepare
+
+  !> Add the stress of a strain increment: stress + C : dstrain.
+  pure subroutine elastic_add(elastic, dstrain, stress)
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: dstrain(4)   !! strain increment [-], tension +
+    real(dp), intent(inout) :: stress(4) !! stress [Pa], tension +
+    real(dp) :: volumetric, two_g
+
+    volumetric = elastic%lame*(dstrain(1) + dstrain(2) + dstrain(3))
+    two_g = 2.0_dp*elastic%shear
+    stress(1) = stress(1) + volumetric + two_g*dstrain(1)
+    stress(2) = stress(2) + volumetric + two_g*dstrain(2)
+    stress(3) = stress(3) + volumetric + two_g*dstrain(3)
+    stress(4) = stress(4) + two_g*dstrain(4)
+  end subroutine elastic_add
+
+  !> Elastic energy density a : C^-1 : b of two stresses, without the half.
+  pure real(dp) function elastic_bilinear(elastic, a, b)
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: a(4) !! stress [Pa]
+    real(dp), intent(in) :: b(4) !! stress [Pa]
+    real(dp) :: mean_a, mean_b, deviatoric
+
+    mean_a = (a(1) + a(2) + a(3))/3.0_dp
+    mean_b = (b(1) + b(2) + b(3))/3.0_dp
+    deviatoric = (a(1) - mean_a)*(b(1) - mean_b) + (a(2) - mean_a)*(b(2) - mean_b) &
+      + (a(3) - mean_a)*(b(3) - mean_b) + 2.0_dp*a(4)*b(4)
+    elastic_bilinear = mean_a*mean_b/elastic%bulk + deviatoric/(2.0_dp*elastic%shear)
+  end function elastic_bilinear
+
+  !> Stored elastic energy density 1/2 stress : C^-1 : stress [J/m3].
+  pure real(dp) function elastic_energy(elastic, stress)
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: stress(4) !! stress [Pa]
+
+    elastic_energy = 0.5_dp*elastic_bilinear(elastic, stress, stress)
+  end function elastic_energy
+
+  !> Elastic tangent for the stable step: dP = J dsigma F^-T of a change dF at F, with
+  !! dsigma = C : sym(dF F^-1) + K_w tr(dF F^-1) 1. The geometric terms, of the order of
+  !! stress over modulus, are left out.
+  pure subroutine elastic_piola_tangent(elastic, water_bulk, f, df, dpiola)
+    type(elastic_t), intent(in) :: elastic
+    real(dp), intent(in) :: water_bulk !! added volumetric modulus of the pore water [Pa], >= 0
+    real(dp), intent(in) :: f(4)       !! deformation gradient [-], det > 0
+    real(dp), intent(in) :: df(4)      !! change of the deformation gradient [-]
+    real(dp), intent(out) :: dpiola(4) !! change of the first Piola stress [Pa]
+    real(dp) :: inv, h11, h12, h21, h22, dstrain(4), dstress(4)
+
+    inv = 1.0_dp/(f(1)*f(4) - f(2)*f(3))
+    h11 = (df(1)*f(4) - df(2)*f(3))*inv
+    h12 = (df(2)*f(1) - df(1)*f(2))*inv
+    h21 = (df(3)*f(4) - df(4)*f(3))*inv
+    h22 = (df(4)*f(1) - df(3)*f(2))*inv
+    dstrain = [h11, h22, 0.0_dp, 0.5_dp*(h12 + h21)]
+    dstress = water_bulk*(h11 + h22)
+    dstress(4) = 0.0_dp
+    call elastic_add(elastic, dstrain, dstress)
+    call piola_stress(f, dstress, dpiola)
+  end subroutine elastic_piola_tangent
+end module talus_elastic

@@ -1,0 +1,220 @@
+! SPDX-License-Identifier: MIT
+!> The soil at one point: elasticity, plasticity, suction strain and damage composed.
+!!
+!! Order of a step (src/THEORY.md section 3): turn the undamaged stress, add the elastic stress
+!! of the strain less the suction strain, return to the cone, raise damage, degrade. The cone is
+!! that of the plastic strain before the step, so the return satisfies it exactly.
+!! In `net` the stress carried is net stress and equals total stress above the water table; in
+!! `bishop` it is effective stress, and bishop_subtract gives the total.
+module talus_soil_law
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_failed, status_deck
+  use talus_objective, only: objective_increment, tensor_rotate
+  use talus_elastic, only: elastic_t, elastic_prepare, elastic_add, elastic_energy, &
+    elastic_bilinear
+  use talus_drucker_prager, only: cone_t, drucker_prager_return, secant_shear_ratio
+  use talus_strength, only: strength_t, strength_prepare, strength_cone, suction_strength_none
+  use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
+    suction_strain_increment, suction_strain_none
+  use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_part, &
+    damage_dissipation, damage_stored, driver_none, driver_plastic_strain
+  implicit none
+  private
+  public :: soil_law_t, soil_law_prepare, soil_update, soil_stored_energy
+  public :: bishop_factor, bishop_subtract, soil_needs_strain
+
+  integer, parameter, public :: plasticity_none = 0, plasticity_drucker_prager = 1
+  integer, parameter, public :: stress_net = 1, stress_bishop = 2
+
+  !> Entries of the history of a point besides its stress and strain. Works are per volume of
+  !! the reference configuration, so that their sum over the nodes is sum(work*reference area).
+  integer, parameter, public :: history_eqps = 1         !! equivalent plastic strain [-]
+  integer, parameter, public :: history_kappa = 2        !! largest equivalent strain [-]
+  integer, parameter, public :: history_damage = 3       !! D [-]
+  integer, parameter, public :: history_plastic_work = 4 !! [J/m3]
+  integer, parameter, public :: history_damage_work = 5  !! [J/m3]
+  integer, parameter, public :: history_size = 5
+
+  !> Outcome of soil_update.
+  integer, parameter, public :: soil_ok = 0, soil_inverted = 1, soil_not_finite = 2
+
+  !> Everything the update of one soil needs: set the components, then soil_law_prepare.
+  type :: soil_law_t
+    integer :: plasticity = plasticity_none !! one of plasticity_*
+    integer :: stress = stress_net          !! one of stress_*
+    logical :: own_strain = .true.          !! false: strain_advance drives the strain from outside
+    type(elastic_t) :: elastic
+    type(strength_t) :: strength
+    type(suction_strain_t) :: swelling
+    type(damage_t) :: damage
+  end type soil_law_t
+
+contains
+
+  !> Check a law and derive its constants. The first fault is reported.
+  pure subroutine soil_law_prepare(law, status)
+    type(soil_law_t), intent(inout) :: law
+    type(status_t), intent(inout) :: status !! status_deck when the law cannot be used
+
+    call elastic_prepare(law%elastic, status)
+    if (status_failed(status)) return
+    if (law%plasticity == plasticity_drucker_prager) call strength_prepare(law%strength, status)
+    call suction_strain_prepare(law%swelling, status)
+    call damage_prepare(law%damage, law%elastic, status)
+    if (law%stress == stress_bishop) then
+      if (law%strength%suction /= suction_strength_none .or. &
+        law%swelling%kind /= suction_strain_none) call status_set(status, status_deck, &
+        'stress = bishop counts suction already: suction_strength and suction_strain must be none')
+    end if
+    if (law%damage%driver == driver_plastic_strain .and. law%plasticity == plasticity_none) &
+      call status_set(status, status_deck, 'driver = plastic_strain needs plasticity')
+  end subroutine soil_law_prepare
+
+  !> True when the update reads the strain of the point.
+  pure logical function soil_needs_strain(law)
+    type(soil_law_t), intent(in) :: law
+
+    soil_needs_strain = law%damage%driver /= driver_none .and. &
+      law%damage%driver /= driver_plastic_strain
+  end function soil_needs_strain
+
+  !> Advance one point over one step.
+  !!
+  !! On a failure (ierr /= 0) the state of the point is not to be used further. The stiffness
+  !! scale is (1 - D) times the secant shear ratio, between 0 and 1; its floor is the caller's.
+  pure subroutine soil_update(law, f_old, f_new, suction_old, suction_new, saturation, &
+    effective, strain, history, stress, stiffness_scale, ierr)
+    type(soil_law_t), intent(in) :: law            !! prepared
+    real(dp), intent(in) :: f_old(4)               !! deformation gradient before [-]
+    real(dp), intent(in) :: f_new(4)               !! deformation gradient after [-]
+    real(dp), intent(in) :: suction_old            !! s = -p_w before [Pa]
+    real(dp), intent(in) :: suction_new            !! s after [Pa]
+    real(dp), intent(in) :: saturation             !! effective saturation after [-]
+    real(dp), intent(inout) :: effective(4)        !! undamaged stress [Pa], tension +
+    real(dp), intent(inout) :: strain(4)           !! total strain [-]; kept only for damage
+    real(dp), intent(inout) :: history(history_size) !! see history_*
+    real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
+    real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
+    integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
+    real(dp) :: dstrain(4), rotation(2), det_new, swelling, before(4)
+    logical :: yielded
+
+    call objective_increment(f_old, f_new, dstrain, rotation, det_new, ierr)
+    if (ierr /= soil_ok) then
+      stress = effective
+      stiffness_scale = 1.0_dp
+      return
+    end if
+    call tensor_rotate(rotation, effective)
+    before = effective
+    if (law%own_strain .and. law%damage%driver /= driver_none) then
+      call tensor_rotate(rotation, strain)
+      strain = strain + dstrain
+    end if
+    if (law%swelling%kind /= suction_strain_none) then
+      swelling = suction_strain_increment(law%swelling, suction_old, suction_new, det_new)
+      dstrain(1:3) = dstrain(1:3) - swelling
+    end if
+    call elastic_add(law%elastic, dstrain, effective)
+
+    stiffness_scale = 1.0_dp
+    yielded = .false.
+    stress = effective
+    if (law%plasticity == plasticity_drucker_prager) then
+      call return_to_cone(law, suction_new, saturation, effective, history(history_eqps), yielded)
+      stiffness_scale = secant_shear_ratio(law%elastic%shear, effective, history(history_eqps))
+    end if
+    if (yielded .or. law%damage%driver /= driver_none) then
+      call dissipate(law, 0.5_dp*(det_new + f_old(1)*f_old(4) - f_old(2)*f_old(3)), yielded, &
+        before, strain, effective, history, stress)
+      stiffness_scale = stiffness_scale*(1.0_dp - history(history_damage))
+    end if
+    if (.not. ieee_is_finite(stress(1) + stress(2) + stress(3) + stress(4))) &
+      ierr = soil_not_finite
+  end subroutine soil_update
+
+  !> Plastic return of a trial stress, with the plastic strain it adds.
+  pure subroutine return_to_cone(law, suction, saturation, effective, eqps, yielded)
+    type(soil_law_t), intent(in) :: law
+    real(dp), intent(in) :: suction, saturation
+    real(dp), intent(inout) :: effective(4), eqps
+    logical, intent(out) :: yielded
+    type(cone_t) :: cone
+    real(dp) :: deqps
+
+    call strength_cone(law%strength, eqps, suction, saturation, cone)
+    call drucker_prager_return(cone, law%elastic%shear, law%elastic%bulk, effective, deqps, yielded)
+    eqps = eqps + deqps
+  end subroutine return_to_cone
+
+  !> Damage of the step, the stress it leaves, and the works dissipated. Both works follow from
+  !! the trapezoidal work 1/2 (sigma_old + sigma_new) : d(eps), which they close exactly:
+  !! work = change of the stored energy + plastic work + damage work.
+  pure subroutine dissipate(law, volume, yielded, before, strain, effective, history, stress)
+    type(soil_law_t), intent(in) :: law
+    real(dp), intent(in) :: volume       !! J in the middle of the step [-]
+    logical, intent(in) :: yielded
+    real(dp), intent(in) :: before(4)    !! undamaged stress before, turned [Pa]
+    real(dp), intent(in) :: strain(4)    !! total strain [-]
+    real(dp), intent(in) :: effective(4) !! undamaged stress after [Pa]
+    real(dp), intent(inout) :: history(history_size)
+    real(dp), intent(inout) :: stress(4) !! trial stress in, damaged stress out [Pa]
+    real(dp) :: trial(4), part(4), old(4), d_old
+
+    trial = stress
+    stress = effective
+    old = before
+    if (law%damage%driver /= driver_none) then
+      d_old = history(history_damage)
+      call damage_advance(law%damage, strain, history(history_eqps), history(history_kappa), &
+        history(history_damage))
+      if (history(history_damage) > 0.0_dp) then
+        call damage_part(law%damage%split, effective, part)
+        stress = effective - history(history_damage)*part
+        call damage_part(law%damage%split, before, part)
+        old = before - d_old*part
+        history(history_damage_work) = history(history_damage_work) + volume &
+          *damage_dissipation(law%damage, law%elastic, before, d_old, effective, &
+          history(history_damage))
+      end if
+    end if
+    if (yielded) history(history_plastic_work) = history(history_plastic_work) &
+      + volume*elastic_bilinear(law%elastic, trial - effective, 0.5_dp*(old + stress))
+  end subroutine dissipate
+
+  !> Energy stored elastically per current volume [J/m3], reduced by damage.
+  pure real(dp) function soil_stored_energy(law, effective, d)
+    type(soil_law_t), intent(in) :: law
+    real(dp), intent(in) :: effective(4) !! undamaged stress [Pa]
+    real(dp), intent(in) :: d            !! damage [-]
+
+    if (d > 0.0_dp) then
+      soil_stored_energy = damage_stored(law%damage, law%elastic, effective, d)
+    else
+      soil_stored_energy = elastic_energy(law%elastic, effective)
+    end if
+  end function soil_stored_energy
+
+  !> Part chi of the pore pressure in the total stress: S_e above, 1 below the water table.
+  elemental real(dp) function bishop_factor(suction, saturation)
+    real(dp), intent(in) :: suction    !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation !! effective saturation [-]
+
+    bishop_factor = 1.0_dp
+    if (suction > 0.0_dp) bishop_factor = saturation
+  end function bishop_factor
+
+  !> Total stress from effective stress: sigma = sigma' - chi p_w 1, with p_w = -s.
+  pure subroutine bishop_subtract(suction, saturation, stress)
+    real(dp), intent(in) :: suction      !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation   !! effective saturation [-]
+    real(dp), intent(inout) :: stress(4) !! effective in, total out [Pa], tension +
+    real(dp) :: pull
+
+    pull = bishop_factor(suction, saturation)*suction
+    stress(1) = stress(1) + pull
+    stress(2) = stress(2) + pull
+    stress(3) = stress(3) + pull
+  end subroutine bishop_subtract
+end module talus_soil_law

@@ -1,0 +1,186 @@
+! SPDX-License-Identifier: MIT
+!> HDF5 files: open, close, and groups that appear whole or not at all.
+module talus_h5_file
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+  use hdf5, only: hid_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
+    h5fflush_f, h5gcreate_anon_f, h5gclose_f, h5olink_f, h5tcopy_f, h5tset_size_f, &
+    h5tset_cset_f, h5tset_strpad_f, h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, &
+    h5lexists_f, h5f_acc_trunc_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_scope_global_f, &
+    h5t_native_double, h5t_fortran_s1, h5t_cset_utf8_f, h5t_str_nullpad_f, h5p_link_create_f
+  use talus_status, only: status_t, status_set, status_failed, status_io
+  implicit none
+  private
+  public :: h5_create, h5_open, h5_close, h5_exists, h5_group_begin, h5_group_end
+  public :: h5_fail, h5_letters, h5_text_type
+
+  !> An open HDF5 file.
+  type, public :: h5_file_t
+    character(:), allocatable :: path !! file name
+    integer(hid_t) :: id = -1         !! of the file, -1 when closed
+    integer(hid_t) :: here = -1       !! group in which names without a leading / are found
+  end type h5_file_t
+
+  interface
+    !> POSIX setenv.
+    integer(c_int) function c_setenv(name, value, overwrite) bind(c, name='setenv')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: name(*), value(*)
+      integer(c_int), value :: overwrite
+    end function c_setenv
+  end interface
+
+contains
+
+  !> Start the HDF5 library once, silent, and without file locks: a viewer that has the file open
+  !> must not make the run fail. A lock setting made by the user is kept.
+  subroutine library_start(ierr)
+    integer, intent(out) :: ierr !! 0 when all went well
+
+    ierr = 0
+    if (h5t_native_double > 0) return
+    ierr = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
+    call h5open_f(ierr)
+    if (ierr == 0) call h5eset_auto_f(0, ierr)
+  end subroutine library_start
+
+  !> Create a file, or empty the one that is there.
+  subroutine h5_create(file, path, status)
+    type(h5_file_t), intent(out) :: file
+    character(*), intent(in) :: path !! file name
+    type(status_t), intent(inout) :: status
+    integer :: ierr
+
+    file%path = path
+    if (status_failed(status)) return
+    call library_start(ierr)
+    if (ierr == 0) call h5fcreate_f(path, h5f_acc_trunc_f, file%id, ierr)
+    if (ierr /= 0) then
+      file%id = -1
+      call status_set(status, status_io, 'output file '''//path// &
+        ''': could not be created (does its folder exist, and may you write there?)')
+      return
+    end if
+    file%here = file%id
+  end subroutine h5_create
+
+  !> Open an existing file.
+  subroutine h5_open(file, path, status, read_only)
+    type(h5_file_t), intent(out) :: file
+    character(*), intent(in) :: path !! file name
+    type(status_t), intent(inout) :: status
+    logical, intent(in), optional :: read_only !! default .false.
+    integer :: ierr, mode
+
+    file%path = path
+    if (status_failed(status)) return
+    mode = h5f_acc_rdwr_f
+    call library_start(ierr)
+    if (ierr == 0) then
+      mode = h5f_acc_rdwr_f
+      if (present(read_only)) then
+        if (read_only) mode = h5f_acc_rdonly_f
+      end if
+      call h5fopen_f(path, mode, file%id, ierr)
+    end if
+    if (ierr /= 0) then
+      file%id = -1
+      call status_set(status, status_io, 'HDF5 file '''//path// &
+        ''': could not be opened (is it there, is it HDF5, is it open elsewhere?)')
+      return
+    end if
+    file%here = file%id
+  end subroutine h5_open
+
+  !> Close a file, also after a failure; nothing happens when it is not open.
+  subroutine h5_close(file, status)
+    type(h5_file_t), intent(inout) :: file
+    type(status_t), intent(inout) :: status
+    integer :: ierr
+
+    if (file%id < 0) return
+    if (file%here /= file%id) call h5gclose_f(file%here, ierr)
+    call h5fclose_f(file%id, ierr)
+    if (ierr /= 0) call h5_fail(file, '/', 'could not be closed (disk full?)', status)
+    file%id = -1
+    file%here = -1
+  end subroutine h5_close
+
+  !> Record what went wrong with an object of the file.
+  subroutine h5_fail(file, name, reason, status)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name, reason
+    type(status_t), intent(inout) :: status
+
+    call status_set(status, status_io, &
+      'HDF5 file '''//file%path//''', object '''//name//''': '//reason)
+  end subroutine h5_fail
+
+  !> True when the file has an object of this name; its parent groups must exist.
+  logical function h5_exists(file, name)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name !! path of the object
+    integer :: ierr
+
+    call h5lexists_f(file%here, name, h5_exists, ierr)
+    if (ierr /= 0) h5_exists = .false.
+  end function h5_exists
+
+  !> Start a group that nobody can see before h5_group_end: names without a leading / go into it.
+  subroutine h5_group_begin(file, status)
+    type(h5_file_t), intent(inout) :: file
+    type(status_t), intent(inout) :: status
+    integer :: ierr
+
+    if (status_failed(status)) return
+    call h5gcreate_anon_f(file%id, file%here, ierr)
+    if (ierr /= 0) then
+      file%here = file%id
+      call h5_fail(file, '(new group)', 'could not be created', status)
+    end if
+  end subroutine h5_group_begin
+
+  !> Give the group its name. Its content is flushed first, so that the name never shows half of it.
+  subroutine h5_group_end(file, name, status)
+    type(h5_file_t), intent(inout) :: file
+    character(*), intent(in) :: name !! path of the group, e.g. '/snapshots/000000'
+    type(status_t), intent(inout) :: status
+    integer(hid_t) :: parents
+    integer :: ierr, ignored
+
+    if (status_failed(status)) return
+    call h5fflush_f(file%id, h5f_scope_global_f, ierr)
+    if (ierr == 0) call h5pcreate_f(h5p_link_create_f, parents, ierr)
+    if (ierr == 0) then
+      call h5pset_create_inter_group_f(parents, 1, ierr)
+      call h5olink_f(file%here, file%id, name, ierr, lcpl_id=parents)
+      call h5pclose_f(parents, ignored)
+    end if
+    if (ierr /= 0) call h5_fail(file, name, 'could not be written (name in use, disk full?)', status)
+    call h5gclose_f(file%here, ignored)
+    file%here = file%id
+  end subroutine h5_group_end
+
+  !> The bytes of a text: cut to fit, NUL behind its end.
+  pure subroutine h5_letters(text, letters)
+    character(*), intent(in) :: text
+    character(kind=c_char), intent(out) :: letters(:)
+    integer :: i
+
+    letters = c_null_char
+    do i = 1, min(len(text), size(letters))
+      letters(i) = text(i:i)
+    end do
+  end subroutine h5_letters
+
+  !> HDF5 type of a text of `length` bytes of UTF-8, padded with NUL.
+  subroutine h5_text_type(length, id)
+    integer, intent(in) :: length
+    integer(hid_t), intent(out) :: id
+    integer :: ierr
+
+    call h5tcopy_f(h5t_fortran_s1, id, ierr)
+    call h5tset_size_f(id, int(max(1, length), size_t), ierr)
+    call h5tset_cset_f(id, h5t_cset_utf8_f, ierr)
+    call h5tset_strpad_f(id, h5t_str_nullpad_f, ierr)
+  end subroutine h5_text_type
+end module talus_h5_file

@@ -1,0 +1,108 @@
+! SPDX-License-Identifier: MIT
+!> A whole text file as one string, with the reasons why it may not be one.
+module talus_deck_file
+  use talus_kinds, only: i8
+  use talus_text, only: text_of
+  implicit none
+  private
+  public :: file_read, file_problem
+
+  !> Largest deck [bytes]: a larger file is surely something else.
+  integer, parameter :: bytes_max = 4000000
+
+contains
+
+  !> Contents of a file with lines ended by newlines; `problem` is '' when it could be read.
+  subroutine file_read(path, text, problem)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(out) :: text, problem
+    integer :: unit, iostat
+    integer(i8) :: bytes
+
+    text = ''
+    problem = file_problem(path)
+    if (len(problem) > 0) return
+    inquire (file=path, size=bytes)
+    if (bytes > bytes_max) then
+      problem = 'the file has '//text_of(bytes)//' bytes; allowed: a namelist of at most '// &
+                text_of(bytes_max)
+      return
+    end if
+    text = repeat(' ', bytes)
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', &
+          status='old', iostat=iostat)
+    if (iostat == 0) read (unit, iostat=iostat) text
+    if (iostat /= 0) then
+      problem = 'the file cannot be read; allowed: a readable text file'
+      return
+    end if
+    close (unit)
+    call normalise(text)
+    if (is_binary(text)) then
+      problem = 'the file is not text; allowed: a namelist in plain text'
+    else if (verify(text, ' '//achar(9)//achar(10)) == 0) then
+      problem = 'the file is empty; allowed: a namelist'
+    end if
+  end subroutine file_read
+
+  !> Why a file cannot be opened for reading, '' when it can.
+  function file_problem(path) result(problem)
+    character(*), intent(in) :: path
+    character(:), allocatable :: problem
+    logical :: exists
+    integer :: unit, iostat, bytes
+
+    problem = ''
+    inquire (file=path//'/.', exist=exists)
+    if (exists) then
+      problem = 'this is a folder; allowed: a file'
+      return
+    end if
+    inquire (file=path, exist=exists)
+    if (.not. exists) then
+      problem = 'no such file; allowed: a path relative to the deck''s folder, or absolute'
+      return
+    end if
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', &
+          status='old', iostat=iostat)
+    if (iostat /= 0) then
+      problem = 'the file cannot be opened; allowed: a readable file'
+      return
+    end if
+    inquire (unit=unit, size=bytes)
+    close (unit)
+    if (bytes <= 0) problem = 'the file is empty; allowed: a file with content'
+  end function file_problem
+
+  !> Drop a byte-order mark and turn the line ends of other systems into newlines.
+  subroutine normalise(text)
+    character(:), allocatable, intent(inout) :: text
+    integer :: i, n
+
+    if (index(text, char(239)//char(187)//char(191)) == 1) text = text(4:)
+    n = 0
+    do i = 1, len(text)
+      if (text(i:i) == achar(10) .and. i > 1) then
+        if (text(max(i-1, 1):max(i-1, 1)) == achar(13)) cycle
+      end if
+      n = n + 1
+      text(n:n) = merge(achar(10), text(i:i), text(i:i) == achar(13))
+    end do
+    text = text(:n)
+  end subroutine normalise
+
+  !> True when control characters appear that no text has.
+  pure logical function is_binary(text)
+    character(*), intent(in) :: text
+    integer :: i, code
+
+    is_binary = .false.
+    do i = 1, len(text)
+      code = iachar(text(i:i))
+      if (code >= 0 .and. code < 32 .and. code /= 9 .and. code /= 10 .and. code /= 12) then
+        is_binary = .true.
+        return
+      end if
+    end do
+  end function is_binary
+end module talus_deck_file

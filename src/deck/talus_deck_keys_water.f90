@@ -1,0 +1,140 @@
+! SPDX-License-Identifier: MIT
+!> Key table, part 3: water, boundary and stage.
+module talus_deck_keys_water
+  use talus_deck_table, only: table_t, group => table_add_group, key => table_add_key
+  implicit none
+  private
+  public :: keys_add_water, keys_add_boundary, keys_add_stage
+
+contains
+
+  !> Keys of &water.
+  subroutine keys_add_water(t)
+    type(table_t), intent(inout) :: t
+    character(*), parameter :: fx = 'retention=fredlund_xing', bc = 'retention=brooks_corey'
+    character(*), parameter :: vg = 'retention=van_genuchten'
+
+    call group(t, 'water', .true., .false., &
+               'Retention and conductivity of one soil or of all; without it there is no water.')
+    call key(t, 'soil', 'string', '', '', '', &
+             'Name of the soil; blank: every soil not named by another &water.')
+    call key(t, 'retention', 'string', '', '*', &
+             'van_genuchten|gardner|brooks_corey|fredlund_xing|table', 'Retention law.')
+    call key(t, 'conductivity_x', 'real', 'm/s', '*', '(0, 10]', &
+             'Saturated hydraulic conductivity along x.')
+    call key(t, 'conductivity_y', 'real', 'm/s', '=conductivity_x', '(0, 10]', &
+             'Saturated hydraulic conductivity along y.')
+    call key(t, 'saturation_residual', 'real', '', '0', '[0, 1)', &
+             'Degree of saturation that no suction removes.')
+    call key(t, 'saturation_maximum', 'real', '', '1', '(0, 1]', &
+             'Degree of saturation at zero suction.')
+    call key(t, 'alpha', 'real', '1/m', '*', '(0, 1e4]', &
+             'alpha of van Genuchten or Gardner, per metre of suction head.', &
+             'retention=van_genuchten|gardner')
+    call key(t, 'n', 'real', '', '*', '(1, 20]', 'n of van Genuchten; m = 1 - 1/n.', vg)
+    call key(t, 'pore_connectivity', 'real', '', '0.5', '[-10, 10]', &
+             'Exponent of the effective saturation in Mualem''s conductivity.', vg)
+    call key(t, 'air_entry_cut', 'real', 'm', '~0.02 for n < 2, else 0', '[0, 10]', &
+             'Suction head below which the soil stays saturated.', vg)
+    call key(t, 'air_entry', 'real', 'm', '*', '(0, 1e4]', 'Air-entry suction head.', bc)
+    call key(t, 'lambda', 'real', '', '*', '(0, 20]', 'Pore-size index of Brooks and Corey.', bc)
+    call key(t, 'fx_a', 'real', 'm', '*', '(0, 1e5]', 'a of Fredlund and Xing, as a head.', fx)
+    call key(t, 'fx_n', 'real', '', '*', '(0, 50]', 'n of Fredlund and Xing.', fx)
+    call key(t, 'fx_m', 'real', '', '*', '(0, 50]', 'm of Fredlund and Xing.', fx)
+    call key(t, 'fx_residual_suction', 'real', 'm', '*', '(0, 1e5]', &
+             'Residual suction head of Fredlund and Xing.', fx)
+    call key(t, 'file', 'path', '', '*', '', &
+             'CSV file of suction_Pa, saturation, relative_conductivity.', 'retention=table')
+    call key(t, 'relative_conductivity_minimum', 'real', '', '1e-12', '(0, 0.1]', &
+             'Smallest relative conductivity.')
+    call key(t, 'specific_storage', 'real', '1/Pa', '1e-9', '(0, 1e-3]', &
+             'Water stored per volume of saturated soil and Pa, by compression of water and grains.')
+    call key(t, 'kozeny_carman', 'logical', '', '.false.', '', &
+             'Conductivity follows porosity by Kozeny and Carman.')
+  end subroutine keys_add_water
+
+  !> Keys of &boundary.
+  subroutine keys_add_boundary(t)
+    type(table_t), intent(inout) :: t
+
+    call group(t, 'boundary', .true., .false., &
+               'A part of the boundary and what acts there; a later one overrides an earlier one.')
+    call key(t, 'name', 'string', '', '', '', 'Name, for messages and summaries.')
+    call key(t, 'where', 'string', '', '*', 'left|right|bottom|top|face|surface|box|all', &
+             'Which part: a side, the face of a slope, the surface (top and face), a box or all.')
+    call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', 'Left end of the box; absent: unbounded.', &
+             'where=box')
+    call key(t, 'to_x', 'real', 'm', '', '[-1e7, 1e7]', 'Right end of the box; absent: unbounded.', &
+             'where=box')
+    call key(t, 'from_y', 'real', 'm', '', '[-1e7, 1e7]', 'Bottom of the box; absent: unbounded.', &
+             'where=box')
+    call key(t, 'to_y', 'real', 'm', '', '[-1e7, 1e7]', 'Top of the box; absent: unbounded.', &
+             'where=box')
+    call key(t, 'stages', 'string_list', '', '', '', &
+             'Names of the stages in which it acts; absent: in all.')
+    call key(t, 'displacement', 'string', '', 'free', 'free|fixed|roller_x|roller_y', &
+             'Held displacement: roller_x holds x, roller_y holds y, fixed holds both.')
+    call key(t, 'velocity_x', 'real', 'm/s', '', '[-1e3, 1e3]', &
+             'Prescribed velocity along x; absent: none.')
+    call key(t, 'velocity_y', 'real', 'm/s', '', '[-1e3, 1e3]', &
+             'Prescribed velocity along y; absent: none.')
+    call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
+    call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along y, upward positive.')
+    call key(t, 'pressure', 'real', 'Pa', '0', '[-1e10, 1e10]', &
+             'Pressure normal to the boundary, positive inward.')
+    call key(t, 'water', 'string', '', 'none', 'none|impermeable|head|flux|rain|seepage_face', &
+             'Water condition; none leaves what an earlier boundary set (impermeable at first).')
+    call key(t, 'head', 'real', 'm', '*', '[-1e7, 1e7]', &
+             'Total head: elevation at which water would stand.', 'water=head')
+    call key(t, 'flux', 'real', 'm/s', '*', '[-10, 10]', &
+             'Volume per area and time, inward positive.', 'water=flux')
+    call key(t, 'rain', 'real', 'mm/h', '', '[0, 1000]', &
+             'Rain per horizontal area; give this or hydrograph.', 'water=rain')
+    call key(t, 'hydrograph', 'path', '', '', '', &
+             'CSV file of time_s, mm_per_h; time counts from the start of the stage.', 'water=rain')
+    call key(t, 'pressure_max', 'real', 'Pa', '0', '[0, 1e6]', &
+             'Pore pressure at which rain ponds and the rest runs off.', 'water=rain')
+  end subroutine keys_add_boundary
+
+  !> Keys of &stage.
+  subroutine keys_add_stage(t)
+    type(table_t), intent(inout) :: t
+    character(*), parameter :: timed = 'kind=storm|dynamic', still = 'kind=geostatic|storm'
+
+    call group(t, 'stage', .true., .true., 'A part of the run; stages follow in the order of the deck.')
+    call key(t, 'name', 'string', '', '*', '', 'Name, used by &boundary and in the results.')
+    call key(t, 'kind', 'string', '', '*', 'geostatic|storm|dynamic', &
+             'Relax to equilibrium; a storm of hours with soil in equilibrium; or real time.')
+    call key(t, 'solve', 'string', '', '~soil without &water or if geostatic, else both', &
+             'soil|seepage|both', 'What moves: the soil, the water or both.')
+    call key(t, 'duration', 'real', 's', '*', '(0, 1e11]', 'Simulated time of the stage.', timed)
+    call key(t, 'storm_step', 'real', 's', '*', '(0, 1e9]', &
+             'Step of the storm clock between two equilibria of the soil.', 'kind=storm')
+    call key(t, 'storm_step_minimum', 'real', 's', '~storm_step/64', '(0, 1e9]', &
+             'Smallest step when the time of failure is bisected.', 'kind=storm')
+    call key(t, 'tolerance', 'real', '', '1e-4', '(0, 0.1]', &
+             'Out-of-balance force over applied force that counts as equilibrium.', still)
+    call key(t, 'steps_max', 'integer', '', '100000', '[1, 2000000000]', &
+             'Most steps of one relaxation.', still)
+    call key(t, 'damping', 'real', '', '~0 if dynamic, else 0.8', '[0, 0.99]', &
+             'Local damping, as a fraction of the out-of-balance force.')
+    call key(t, 'mass_scaling', 'logical', '', '~.false. if dynamic, else .true.', '', &
+             'Scale the masses so that relaxation takes few steps.')
+    call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
+             'Time step over the largest stable one.')
+    call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
+             'Displacement in one storm step that counts as failure; absent: lost equilibrium only.', &
+             'kind=storm')
+    call key(t, 'after_failure', 'string', '', 'dynamic_next', 'dynamic_next|stop', &
+             'On failure go on with the next dynamic stage, or stop the run.', 'kind=storm')
+    call key(t, 'only_after_failure', 'logical', '', '.false.', '', &
+             'Skip this stage unless the storm before it ended in failure.', 'kind=dynamic')
+    call key(t, 'rest_velocity', 'real', 'm/s', '0', '[0, 100]', &
+             'Largest velocity that counts as rest and ends the stage; 0: run to the end.', &
+             'kind=dynamic')
+    call key(t, 'reset_displacement', 'logical', '', '~.true. if geostatic, else .false.', '', &
+             'Set displacement and plastic strain to zero at the end of the stage.')
+    call key(t, 'snapshots', 'integer', '', '10', '[0, 100000]', &
+             'Number of snapshots in the stage, besides its start.')
+  end subroutine keys_add_stage
+end module talus_deck_keys_water

@@ -116,10 +116,10 @@ contains
   subroutine result_write_mesh(result, nodes, soil, soil_names, cell_area, element_offset, &
     element_nodes, status)
     type(result_t), intent(inout) :: result
-    real(dp), intent(in) :: nodes(:,:)        !! reference positions [m], (2,n)
-    integer, intent(in) :: soil(:)            !! soil of each node, from 1, (n)
+    real(dp), intent(in), contiguous :: nodes(:,:) !! reference positions [m], (2,n)
+    integer, intent(in), contiguous :: soil(:) !! soil of each node, from 1, (n)
     character(*), intent(in) :: soil_names(:)
-    real(dp), intent(in) :: cell_area(:)      !! reference area of each nodal cell [m2], (n)
+    real(dp), intent(in), contiguous :: cell_area(:) !! reference area of each nodal cell [m2], (n)
     integer, intent(in) :: element_offset(:)  !! first entry of each element, from 1, (ne+1)
     integer, intent(in) :: element_nodes(:)   !! corners, from 1 (0 in the file), 3 or 4 each
     type(status_t), intent(inout) :: status

@@ -110,6 +110,7 @@ contains
   pure logical function text_is_one_of(word, choices)
     character(*), intent(in) :: word, choices
 
-    text_is_one_of = index('|'//choices//'|', '|'//trim(word)//'|') > 0
+    text_is_one_of = index(word, '|') == 0 .and. &
+      index('|'//choices//'|', '|'//trim(word)//'|') > 0
   end function text_is_one_of
 end module talus_text

@@ -32,8 +32,8 @@ module talus_dual_cells
     real(dp), allocatable :: half_normal(:,:)    !! outward normal times length/2 [m], (2,nh)
     real(dp), allocatable :: half_mid(:,:)       !! midpoint of the half [m], (2,nh)
 
-    integer, allocatable :: edge_node(:,:)       !! nodes of each element edge, smaller first, (2,ne)
-    real(dp), allocatable :: edge_normal(:,:)    !! sum of its segments' normals, first to second [m]
+    integer, allocatable :: edge_node(:,:)       !! nodes of element edges, smaller first, (2,ne)
+    real(dp), allocatable :: edge_normal(:,:)    !! sum of its segments' normals [m], (2,ne)
     integer, allocatable :: node_offset(:)       !! first neighbour of each node, (n+1)
     integer, allocatable :: node_neighbour(:)    !! node at the other end of the edge
     integer, allocatable :: node_edge(:)         !! the edge

@@ -19,7 +19,7 @@ module talus_nodes
     real(dp), allocatable :: x(:,:)            !! reference coordinates [m], (2,n)
     integer, allocatable :: element_offset(:)  !! first corner of each element, (ne+1)
     integer, allocatable :: element_nodes(:)   !! nodes, counter-clockwise, 3 or 4 an element
-    integer, allocatable :: boundary_edge(:,:) !! nodes of boundary edges, domain on the left, (2,nb)
+    integer, allocatable :: boundary_edge(:,:) !! nodes; the domain is on the left, (2,nb)
     integer, allocatable :: boundary_tag(:)    !! one of tag_*, (nb)
     integer, allocatable :: soil(:)            !! soil number of each node, (n); file meshes only
   end type mesh_t
@@ -38,21 +38,23 @@ contains
 
   !> Unique element edges. Fails when an edge is used twice in the same direction: elements then
   !> overlap, or more than two of them meet at the edge.
-  pure subroutine mesh_edges(mesh, edge_node, edge_corner, corner_edge, status)
+  pure subroutine mesh_edges(mesh, edge_node, edge_corner, corner_edge, status, bad_element)
     type(mesh_t), intent(in) :: mesh
     integer, allocatable, intent(out) :: edge_node(:,:)   !! smaller node first, (2,ne)
     integer, allocatable, intent(out) :: edge_corner(:,:) !! corner going first to second node, and
                                                           !! the one going back; 0 on the boundary
     integer, allocatable, intent(out) :: corner_edge(:)   !! edge that starts at each corner
     type(status_t), intent(inout) :: status
+    integer, intent(out), optional :: bad_element         !! first one to fail, or 0
     integer, allocatable :: start(:), filled(:), bucket(:), node(:,:), corner(:,:)
-    integer :: e, k, p, a, b, low, high, edge, n_edge, way
+    integer :: e, k, p, a, b, low, high, edge, n_edge, way, bad
 
     call bucket_starts(mesh, start)
     allocate (filled(size(start)-1), bucket(size(mesh%element_nodes)))
     allocate (node(2, size(bucket)), corner(2, size(bucket)), corner_edge(size(bucket)))
     filled = 0
     n_edge = 0
+    bad = 0
     do e = 1, size(mesh%element_offset) - 1
       do k = mesh%element_offset(e), mesh%element_offset(e+1) - 1
         a = mesh%element_nodes(k)
@@ -72,14 +74,18 @@ contains
           corner(:, edge) = 0
         end if
         way = merge(1, 2, a == low)
-        if (corner(way, edge) /= 0) call status_set(status, status_deck, 'nodes '//text_of(a)// &
-          ' and '//text_of(b)//': elements overlap, or more than two share this edge')
+        if (corner(way, edge) /= 0) then
+          if (bad == 0) bad = e
+          call status_set(status, status_deck, 'edge between nodes '//text_of(a)//' and '// &
+            text_of(b)//': elements overlap there, or more than two of them share it')
+        end if
         corner(way, edge) = k
         corner_edge(k) = edge
       end do
     end do
     edge_node = node(:, :n_edge)
     edge_corner = corner(:, :n_edge)
+    if (present(bad_element)) bad_element = bad
   end subroutine mesh_edges
 
   !> Room for the edges that start at each node as their smaller node.

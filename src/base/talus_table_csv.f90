@@ -5,6 +5,8 @@
 !! and lines that start with # are skipped.
 module talus_table_csv
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: ieee_exceptions, only: ieee_overflow, ieee_get_halting_mode, &
+    ieee_set_halting_mode, ieee_set_flag
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_deck, status_io, status_failed
   use talus_text, only: text_of
@@ -108,11 +110,8 @@ contains
       last = first + last - 2
       field = adjustl(text(first:last))
       iostat = 1
-      if (len_trim(field) > 0 .and. verify(trim(field), '0123456789+-.eEdD') == 0) &
-        read (field, *, iostat=iostat) row(column)
-      if (iostat == 0) then
-        if (.not. ieee_is_finite(row(column))) iostat = 1
-      end if
+      if (verify(trim(field), '0123456789+-.eEdD') == 0) &
+        call read_number(field, row(column), iostat)
       if (iostat /= 0) then
         call status_set(status, status_deck, trim(path)//':'//text_of(line)//': value '''// &
           trim(field)//''' in column '//text_of(column)//' is not a finite number; expected '// &
@@ -125,4 +124,22 @@ contains
       text_of(line)//': '''//trim(text)//''' has more than '//text_of(size(row))// &
       ' columns; expected '//header)
   end subroutine read_row
+
+  !> A finite number, or iostat /= 0. A number too large must not halt a debugging build.
+  subroutine read_number(field, value, iostat)
+    character(*), intent(in) :: field
+    real(dp), intent(out) :: value
+    integer, intent(out) :: iostat
+    logical :: halting
+
+    value = 0.0_dp
+    iostat = 1
+    if (len_trim(field) == 0) return
+    call ieee_get_halting_mode(ieee_overflow, halting)
+    call ieee_set_halting_mode(ieee_overflow, .false.)
+    read (field, *, iostat=iostat) value
+    call ieee_set_flag(ieee_overflow, .false.)
+    call ieee_set_halting_mode(ieee_overflow, halting)
+    if (iostat == 0 .and. .not. ieee_is_finite(value)) iostat = 1
+  end subroutine read_number
 end module talus_table_csv

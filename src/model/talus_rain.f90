@@ -29,8 +29,9 @@ contains
     real(dp), intent(in) :: mm_each_hour !! intensity [mm/h]
     type(rain_t) :: rain
 
-    rain%time = [-huge(1.0_dp)]
-    rain%intensity = [mm_each_hour*mm_per_hour]
+    allocate (rain%time(1), rain%intensity(1))
+    rain%time(1) = -huge(1.0_dp)
+    rain%intensity(1) = mm_each_hour*mm_per_hour
   end function rain_constant
 
   !> Rain in steps.

@@ -50,7 +50,7 @@ module talus_retention
     real(dp) :: fx_m = 0.0_dp                !! Fredlund-Xing m
     real(dp) :: fx_residual_suction = 0.0_dp !! Fredlund-Xing residual suction head [m]
     real(dp) :: c_parameter = 0.0_dp         !! Broadbridge-White C, > 1
-    real(dp) :: air_entry_cut = -1.0_dp      !! entry head [m]; negative: automatic
+    real(dp) :: air_entry_cut = -1.0_dp      !! entry head [m]; negative or NaN: automatic
     real(dp) :: relative_conductivity_minimum = 1.0e-12_dp !! floor of k_r
     type(retention_table_t) :: table         !! points of law 'table'
   end type retention_t
@@ -82,11 +82,11 @@ contains
     real(dp) :: weight
 
     weight = retention%unit_weight
-    call require(weight > 0.0_dp, 'water_unit_weight', weight, '> 0 N/m3', status)
+    call require_range('water_unit_weight', weight, 1.0_dp, 1.0e6_dp, 'N/m3', status)
     law%l = retention%pore_connectivity
     law%conductivity_minimum = retention%relative_conductivity_minimum
-    call require(law%conductivity_minimum >= 1.0e-20_dp .and. law%conductivity_minimum <= 0.1_dp, &
-      'relative_conductivity_minimum', law%conductivity_minimum, '1e-20 to 0.1', status)
+    call require_range('relative_conductivity_minimum', law%conductivity_minimum, 1.0e-20_dp, &
+      0.1_dp, '', status)
     law%saturation_residual = retention%saturation_residual
     law%saturation_maximum = retention%saturation_maximum
     select case (retention%law)
@@ -96,7 +96,7 @@ contains
     case ('gardner')
       law%law = law_gardner
       call prepare_alpha(retention, law, status)
-      law%entry = max(retention%air_entry_cut, 0.0_dp)*weight
+      law%entry = entry_head(retention, .false.)*weight
     case ('brooks_corey')
       law%law = law_brooks_corey
       call prepare_brooks_corey(retention, law, status)
@@ -110,19 +110,17 @@ contains
       law%law = law_broadbridge_white
       call prepare_alpha(retention, law, status)
       law%c = retention%c_parameter
-      call require(law%c > 1.0_dp .and. law%c <= 1.0e3_dp, 'c_parameter', law%c, &
-        '> 1 and <= 1000', status)
+      call require_range('c_parameter', law%c, 1.001_dp, 1.0e3_dp, '', status)
     case default
       call status_set(status, status_deck, 'water: retention = '''//trim(retention%law)// &
         ''' is not known; allowed: '//retention_choices)
     end select
-    call require(law%saturation_residual >= 0.0_dp .and. law%saturation_residual < &
-      law%saturation_maximum, 'saturation_residual', law%saturation_residual, &
-      '>= 0 and < saturation_maximum', status)
-    call require(law%saturation_maximum <= 1.0_dp, 'saturation_maximum', law%saturation_maximum, &
-      '<= 1', status)
-    call require(law%entry < 0.01_dp*suction_greatest, 'air_entry', law%entry/weight, &
-      '< 1e7 Pa as suction', status)
+    if (status_failed(status)) return
+    call require_range('saturation_maximum', law%saturation_maximum, 0.01_dp, 1.0_dp, '', status)
+    call require_range('saturation_residual', law%saturation_residual, 0.0_dp, &
+      law%saturation_maximum - 1.0e-3_dp, '(below saturation_maximum)', status)
+    call require_range('air_entry', law%entry/weight, 0.0_dp, 0.01_dp*suction_greatest/weight, &
+      'm', status)
   end subroutine retention_prepare
 
   subroutine prepare_alpha(retention, law, status)
@@ -130,8 +128,7 @@ contains
     type(retention_law_t), intent(inout) :: law
     type(status_t), intent(inout) :: status
 
-    call require(retention%alpha >= 1.0e-4_dp .and. retention%alpha <= 1.0e4_dp, 'alpha', &
-      retention%alpha, '1e-4 to 1e4 1/m', status)
+    call require_range('alpha', retention%alpha, 1.0e-4_dp, 1.0e4_dp, '1/m', status)
     if (status_failed(status)) return
     law%alpha = retention%alpha/retention%unit_weight
     law%scale = 1.0_dp/law%alpha
@@ -145,15 +142,13 @@ contains
 
     call prepare_alpha(retention, law, status)
     law%n = retention%n
-    call require(law%n > 1.0_dp .and. law%n <= 20.0_dp, 'n', law%n, '> 1 and <= 20', status)
-    call require(law%l >= -1.0_dp .and. law%l <= 10.0_dp, 'pore_connectivity', law%l, &
-      '-1 to 10', status)
+    call require_range('n', law%n, 1.001_dp, 20.0_dp, '', status)
+    call require_range('pore_connectivity', law%l, -1.0_dp, 10.0_dp, '', status)
     if (status_failed(status)) return
     law%m = 1.0_dp - 1.0_dp/law%n
-    cut = retention%air_entry_cut
-    if (cut < 0.0_dp) cut = merge(entry_automatic, 0.0_dp, law%n < 2.0_dp)
-    call require(law%n >= 2.0_dp .or. cut >= 1.0e-4_dp, 'air_entry_cut', cut, &
-      '>= 1e-4 m where 1 < n < 2 (dk_r/ds is unbounded at saturation otherwise)', status)
+    cut = entry_head(retention, law%n < 2.0_dp)
+    if (law%n < 2.0_dp) call require_range('air_entry_cut', cut, 1.0e-4_dp, 10.0_dp, &
+      'm where n < 2 (dk_r/ds is unbounded at saturation otherwise)', status)
     law%entry = cut*retention%unit_weight
   end subroutine prepare_van_genuchten
 
@@ -163,12 +158,9 @@ contains
     type(status_t), intent(inout) :: status
 
     law%lambda = retention%lambda
-    call require(law%lambda >= 0.01_dp .and. law%lambda <= 20.0_dp, 'lambda', law%lambda, &
-      '0.01 to 20', status)
-    call require(retention%air_entry >= 1.0e-4_dp, 'air_entry', retention%air_entry, &
-      '>= 1e-4 m', status)
-    call require(law%l >= -1.0_dp .and. law%l <= 10.0_dp, 'pore_connectivity', law%l, &
-      '-1 to 10', status)
+    call require_range('lambda', law%lambda, 0.01_dp, 20.0_dp, '', status)
+    call require_range('air_entry', retention%air_entry, 1.0e-4_dp, 1.0e3_dp, 'm', status)
+    call require_range('pore_connectivity', law%l, -1.0_dp, 10.0_dp, '', status)
     law%entry = retention%air_entry*retention%unit_weight
     law%scale = law%entry
   end subroutine prepare_brooks_corey
@@ -179,20 +171,15 @@ contains
     type(status_t), intent(inout) :: status
     real(dp) :: cut
 
-    call require(retention%fx_a >= 1.0e-4_dp .and. retention%fx_a <= 1.0e4_dp, 'fx_a', &
-      retention%fx_a, '1e-4 to 1e4 m', status)
-    call require(retention%fx_n >= 0.1_dp .and. retention%fx_n <= 20.0_dp, 'fx_n', &
-      retention%fx_n, '0.1 to 20', status)
-    call require(retention%fx_m >= 0.05_dp .and. retention%fx_m <= 20.0_dp, 'fx_m', &
-      retention%fx_m, '0.05 to 20', status)
-    call require(retention%fx_residual_suction >= 1.0e-3_dp .and. &
-      retention%fx_residual_suction <= 1.0e5_dp, 'fx_residual_suction', &
-      retention%fx_residual_suction, '1e-3 to 1e5 m', status)
+    call require_range('fx_a', retention%fx_a, 1.0e-4_dp, 1.0e4_dp, 'm', status)
+    call require_range('fx_n', retention%fx_n, 0.1_dp, 20.0_dp, '', status)
+    call require_range('fx_m', retention%fx_m, 0.05_dp, 20.0_dp, '', status)
+    call require_range('fx_residual_suction', retention%fx_residual_suction, 1.0e-3_dp, &
+      1.0e5_dp, 'm', status)
     if (status_failed(status)) return
-    cut = retention%air_entry_cut
-    if (cut < 0.0_dp) cut = merge(entry_automatic, 0.0_dp, retention%fx_n <= 1.0_dp)
-    call require(retention%fx_n > 1.0_dp .or. cut >= 1.0e-4_dp, 'air_entry_cut', cut, &
-      '>= 1e-4 m where fx_n <= 1 (dk_r/ds is unbounded at saturation otherwise)', status)
+    cut = entry_head(retention, retention%fx_n <= 1.0_dp)
+    if (retention%fx_n <= 1.0_dp) call require_range('air_entry_cut', cut, 1.0e-4_dp, 10.0_dp, &
+      'm where fx_n <= 1 (dk_r/ds is unbounded at saturation otherwise)', status)
     law%entry = cut*retention%unit_weight
     law%scale = retention%fx_a*retention%unit_weight
     call fredlund_xing_make(law%scale, retention%fx_n, retention%fx_m, &
@@ -214,6 +201,16 @@ contains
     law%saturation_maximum = law%table%saturation(1)
     law%saturation_residual = law%table%saturation(last)
   end subroutine prepare_table
+
+  !> Air-entry head [m]: as given, or automatic where it is negative or not a number.
+  pure real(dp) function entry_head(retention, needed) result(head)
+    type(retention_t), intent(in) :: retention
+    logical, intent(in) :: needed !! the law needs an air entry
+
+    head = merge(entry_automatic, 0.0_dp, needed)
+    if (.not. ieee_is_finite(retention%air_entry_cut)) return
+    if (retention%air_entry_cut >= 0.0_dp) head = retention%air_entry_cut
+  end function entry_head
 
   !> Effective saturation [-] at a suction [Pa].
   pure real(dp) function retention_saturation(law, suction) result(effective)
@@ -284,16 +281,18 @@ contains
     end do
   end function broadbridge_white_ratio
 
-  !> Record a parameter that is out of range (or not a number).
-  subroutine require(ok, key, value, allowed, status)
-    logical, intent(in) :: ok
-    character(*), intent(in) :: key     !! deck key of group water
+  !> Record a parameter that is out of its range, or not a number.
+  subroutine require_range(key, value, low, high, unit, status)
+    character(*), intent(in) :: key  !! deck key of group water
     real(dp), intent(in) :: value
-    character(*), intent(in) :: allowed !! what is allowed
+    real(dp), intent(in) :: low, high !! both allowed
+    character(*), intent(in) :: unit !! unit and remark, may be empty
     type(status_t), intent(inout) :: status
+    logical :: inside
 
-    if (ok .and. ieee_is_finite(value)) return
-    call status_set(status, status_deck, 'water: '//key//' = '//text_of(value)// &
-      ' is not allowed; allowed: '//allowed)
-  end subroutine require
+    inside = ieee_is_finite(value)
+    if (inside) inside = value >= low .and. value <= high
+    if (.not. inside) call status_set(status, status_deck, trim('water: '//key//' = '// &
+      text_of(value)//' is not allowed; allowed: '//text_of(low)//' to '//text_of(high)//' '//unit))
+  end subroutine require_range
 end module talus_retention

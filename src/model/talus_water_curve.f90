@@ -21,7 +21,7 @@ module talus_water_curve
   implicit none
   private
   public :: water_curve_t, curve_at_pressure, curve_at_saturation, curve_effective_saturation
-  public :: curve_bits
+  public :: curve_flux_potential, curve_bits
 
   integer, parameter, public :: curve_degree = 5  !! of the polynomials of a cell
   integer, parameter, public :: mantissa_bits = 52
@@ -90,9 +90,7 @@ contains
       return
     end if
     s = min(s, curve%driest)
-    i = int(curve_bits(1.0_dp + (s - curve%entry)*curve%inverse_reference, curve%shift) &
-      - curve%first_bits)
-    i = min(i, curve%cells)
+    i = cell_at(curve, s)
     v = (s - curve%coef(row_centre, i))*curve%coef(row_inverse_half, i)
     call flow_at(curve%coef(:, i), v, conductivity_ratio, flux_potential)
     call storage_at(curve%coef(:, i), v, saturation, capacity)
@@ -146,6 +144,34 @@ contains
       capacity)
     effective = (saturation - curve%residual)/(curve%maximum - curve%residual)
   end function curve_effective_saturation
+
+  !> Phi alone [Pa]: for a neighbour in another soil, seen with this soil's curve.
+  pure real(dp) function curve_flux_potential(curve, pressure) result(flux_potential)
+    type(water_curve_t), intent(in) :: curve
+    real(dp), intent(in) :: pressure !! p_w [Pa], + in compression
+    real(dp) :: s, v, conductivity_ratio
+    integer :: i
+
+    s = -pressure
+    if (s <= curve%entry) then
+      flux_potential = curve%potential_entry + (curve%entry - s)
+      return
+    end if
+    s = min(s, curve%driest)
+    i = cell_at(curve, s)
+    v = (s - curve%coef(row_centre, i))*curve%coef(row_inverse_half, i)
+    call flow_at(curve%coef(:, i), v, conductivity_ratio, flux_potential)
+  end function curve_flux_potential
+
+  !> Cell that holds a suction above the air entry.
+  pure integer function cell_at(curve, suction) result(i)
+    type(water_curve_t), intent(in) :: curve
+    real(dp), intent(in) :: suction !! [Pa], entry < s <= driest
+
+    i = int(curve_bits(1.0_dp + (suction - curve%entry)*curve%inverse_reference, curve%shift) &
+      - curve%first_bits)
+    i = min(i, curve%cells)
+  end function cell_at
 
   !> Root v of Y(v) = target: Newton's method from a close guess, kept in a bracket.
   pure subroutine solve_cell(coef, target, v, slope)

@@ -7,7 +7,7 @@
 !!
 !! Two small additions keep storage invertible and the explicit step finite at every suction:
 !!     k_r = k_min + (1 - k_min) k_law,        S_e = (1 - d) S_law + d (1 - T(s)/T(s_driest)),
-!! d = `tail_fraction`, T = s/scale up to the air entry, then growing as log(1 + (s - s_entry)/scale).
+!! d = `tail_fraction`; T = s/scale up to the air entry, then grows as log(1 + (s - s_entry)/scale).
 !! So S_e differs from the law by less than 1e-8, but dS_e/ds never vanishes.
 module talus_water_curve_make
   use talus_kinds, only: dp, i4, i8

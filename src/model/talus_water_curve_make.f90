@@ -14,7 +14,7 @@ module talus_water_curve_make
   use talus_status, only: status_t, status_failed
   use talus_special, only: log1p
   use talus_retention, only: retention_t, retention_law_t, retention_prepare, &
-    retention_saturation, retention_deficit, suction_greatest
+    retention_saturation, retention_deficit, suction_greatest, law_table
   use talus_permeability, only: permeability_relative
   use talus_water_curve, only: water_curve_t, curve_degree, mantissa_bits, guide_bits, &
     row_y, row_k, row_centre, row_half, row_inverse_half, row_potential, coef_rows, &
@@ -25,7 +25,9 @@ module talus_water_curve_make
 
   !> Weight d of the logarithmic tail that keeps dS_e/ds above zero.
   real(dp), parameter, public :: tail_fraction = 1.0e-8_dp
-  !> Error asked of S_e (relative to S_e, at least 1e-8) and of k_r (relative).
+  !> Error asked of S_e (relative to S_e where S_e > 1e-8) and of k_r (relative). A user's table
+  !! has kinks in its slope, at its last point one in S_e: its error of S_e is taken absolute,
+  !! and a few 1e-4 there is what the finest cells give.
   real(dp), parameter :: error_wanted = 1.0e-9_dp
   !> First cell: this power of two times the scale of the law, over the cells of an octave.
   integer, parameter :: reference_power = -18
@@ -180,6 +182,7 @@ contains
     error = 0.0_dp
     monotone = .true.
     least = tail_fraction*(curve%maximum - curve%residual)
+    if (law%law == law_table) least = curve%maximum - curve%residual
     do i = 1, curve%cells
       y_falls = .false.
       k_rises = .false.

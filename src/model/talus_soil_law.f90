@@ -18,7 +18,8 @@ module talus_soil_law
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
   use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_part, &
-    damage_dissipation, damage_stored, driver_none, driver_plastic_strain
+    damage_dissipation, damage_stored, driver_none, driver_plastic_strain, &
+    split_deviatoric
   implicit none
   private
   public :: soil_law_t, soil_law_prepare, soil_update, soil_stored_energy
@@ -122,7 +123,7 @@ contains
     yielded = .false.
     stress = effective
     if (law%plasticity == plasticity_drucker_prager) then
-      call return_to_cone(law, suction_new, saturation, effective, history(history_eqps), yielded)
+      call return_to_cone(law, suction_new, saturation, effective, history, yielded)
       stiffness_scale = secant_shear_ratio(law%elastic%shear, effective, history(history_eqps))
     end if
     if (yielded .or. law%damage%driver /= driver_none) then
@@ -135,17 +136,25 @@ contains
   end subroutine soil_update
 
   !> Plastic return of a trial stress, with the plastic strain it adds.
-  pure subroutine return_to_cone(law, suction, saturation, effective, eqps, yielded)
+  !!
+  !! With the split `deviatoric`, damage leaves the full mean pressure but only (1 - D) of the
+  !! shear stress that dilation is paid from. Dilation therefore fades with (1 - D) there: at
+  !! full dilation a damaged point would create energy.
+  pure subroutine return_to_cone(law, suction, saturation, effective, history, yielded)
     type(soil_law_t), intent(in) :: law
-    real(dp), intent(in) :: suction, saturation
-    real(dp), intent(inout) :: effective(4), eqps
+    real(dp), intent(in) :: suction                  !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation               !! effective saturation [-]
+    real(dp), intent(inout) :: effective(4)          !! trial in, returned out [Pa]
+    real(dp), intent(inout) :: history(history_size)
     logical, intent(out) :: yielded
     type(cone_t) :: cone
     real(dp) :: deqps
 
-    call strength_cone(law%strength, eqps, suction, saturation, cone)
+    call strength_cone(law%strength, history(history_eqps), suction, saturation, cone)
+    if (law%damage%split == split_deviatoric) &
+      cone%alpha_psi = cone%alpha_psi*(1.0_dp - history(history_damage))
     call drucker_prager_return(cone, law%elastic%shear, law%elastic%bulk, effective, deqps, yielded)
-    eqps = eqps + deqps
+    history(history_eqps) = history(history_eqps) + deqps
   end subroutine return_to_cone
 
   !> Damage of the step, the stress it leaves, and the works dissipated. Both works follow from

@@ -156,7 +156,8 @@ contains
     select case (split)
     case (split_deviatoric)
       mean = (stress(1) + stress(2) + stress(3))/3.0_dp
-      part = [stress(1) - mean, stress(2) - mean, stress(3) - mean, stress(4)]
+      part(1:3) = stress(1:3) - mean
+      part(4) = stress(4)
     case (split_tensile)
       centre = 0.5_dp*(stress(1) + stress(2))
       half = 0.5_dp*(stress(1) - stress(2))
@@ -165,8 +166,10 @@ contains
       lower = 0.5_dp*max(0.0_dp, centre - radius)
       ratio = 0.0_dp
       if (radius > 0.0_dp) ratio = (upper - lower)/radius
-      part = [upper + lower + ratio*half, upper + lower - ratio*half, &
-        max(0.0_dp, stress(3)), ratio*stress(4)]
+      part(1) = upper + lower + ratio*half
+      part(2) = upper + lower - ratio*half
+      part(3) = max(0.0_dp, stress(3))
+      part(4) = ratio*stress(4)
     case default
       part = stress
     end select

@@ -188,8 +188,12 @@ contains
           history(history_damage))
       end if
     end if
-    if (yielded) history(history_plastic_work) = history(history_plastic_work) &
-      + volume*elastic_bilinear(law%elastic, trial - effective, 0.5_dp*(old + stress))
+    if (yielded) then
+      trial = trial - effective
+      old = 0.5_dp*(old + stress)
+      history(history_plastic_work) = history(history_plastic_work) &
+        + volume*elastic_bilinear(law%elastic, trial, old)
+    end if
   end subroutine dissipate
 
   !> Energy stored elastically per current volume [J/m3], reduced by damage.

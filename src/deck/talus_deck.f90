@@ -12,9 +12,11 @@ module talus_deck
   use talus_deck_read, only: deck_read
   use talus_deck_derive, only: deck_derive
   use talus_deck_fill, only: deck_fill
+  use talus_deck_check, only: deck_check
+  use talus_deck_print, only: deck_resolve
   implicit none
   private
-  public :: deck_load, deck_load_text
+  public :: deck_load, deck_load_text, deck_load_store
 
 contains
 
@@ -44,21 +46,9 @@ contains
     type(messages_t), intent(out) :: messages
     type(status_t), intent(inout) :: status
     type(store_t) :: store
-    integer :: i, n
+    integer :: n
 
-    call messages_start(messages, name)
-    deck%path = name
-    deck%folder = path_folder(name)
-    deck%text = text
-    call deck_read(text, store, messages)
-    if (store%count > 0) then
-      call deck_derive(store, path_stem(name))
-      call deck_fill(store, deck)
-      do i = 1, store%count
-        if (len(store%section(i)%missed) == 0) cycle
-        call status_set(status, status_deck, 'the key table lacks '//store%section(i)%missed)
-      end do
-    end if
+    call deck_load_store(text, name, deck, store, messages)
     call messages_sort(messages)
     n = messages_errors(messages)
     if (n > 0 .and. .not. status_failed(status)) then
@@ -66,4 +56,24 @@ contains
                       ' in the deck '//name)
     end if
   end subroutine deck_load_text
+
+  !> All steps from text to checked deck. The store is handed out for tests of the key table.
+  subroutine deck_load_store(text, name, deck, store, messages)
+    character(*), intent(in) :: text           !! lines ended by newlines
+    character(*), intent(in) :: name           !! path the deck would have
+    type(deck_t), intent(out) :: deck
+    type(store_t), intent(out) :: store
+    type(messages_t), intent(out) :: messages
+
+    call messages_start(messages, name)
+    deck%path = name
+    deck%folder = path_folder(name)
+    deck%text = text
+    call deck_read(text, store, messages)
+    if (store%count == 0) return
+    call deck_derive(store, path_stem(name))
+    call deck_fill(store, deck)
+    call deck_check(store, deck, messages)
+    call deck_resolve(store, deck%resolved)
+  end subroutine deck_load_store
 end module talus_deck

@@ -28,6 +28,7 @@ contains
     do i = 1, size(at)
       call derive_stage(store, at(i), has_water)
     end do
+    call derive_after_failure(store, at)
   end subroutine deck_derive
 
   !> spacing_y = 0 means the same as spacing.
@@ -51,7 +52,8 @@ contains
     real(dp) :: n
 
     n = real_of(store, section, 'n')
-    call default_real(store, section, 'air_entry_cut', merge(0.02_dp, 0.0_dp, n > 0.0_dp .and. n < 2.0_dp))
+    call default_real(store, section, 'air_entry_cut', merge(0.02_dp, 0.0_dp, n > 0.0_dp .and. &
+        n < 2.0_dp))
   end subroutine derive_air_entry
 
   subroutine derive_stage(store, section, has_water)
@@ -74,6 +76,26 @@ contains
     call default_logical(store, section, 'mass_scaling', kind /= 'dynamic')
     call default_logical(store, section, 'reset_displacement', kind == 'geostatic')
   end subroutine derive_stage
+
+  !> A failed storm goes on with a later dynamic stage when there is one.
+  subroutine derive_after_failure(store, at)
+    type(store_t), intent(inout) :: store
+    integer, intent(in) :: at(:) !! sections of &stage
+    logical :: follows
+    integer :: i
+
+    follows = .false.
+    do i = size(at), 1, -1
+      if (follows) then
+        call default_text(store, at(i), 'after_failure', 'dynamic_next')
+      else
+        call default_text(store, at(i), 'after_failure', 'stop')
+      end if
+      associate (kind => store%section(at(i))%value(store_value(store, at(i), 'kind')))
+        if (kind%s == 'dynamic') follows = .true.
+      end associate
+    end do
+  end subroutine derive_after_failure
 
   !> A real value, -1 when absent.
   pure real(dp) function real_of(store, section, name)

@@ -30,14 +30,15 @@ contains
     type(table_t), intent(inout) :: t
 
     call group(t, 'geometry', .false., .true., &
-               'The body: a box, a slope with its toe on the left, or a file of nodes and elements.')
+               'The body: a box, a slope with its toe on the left, or a file.')
     call key(t, 'kind', 'string', '', '*', 'box|slope|file', 'How the body is described.')
     call key(t, 'width', 'real', 'm', '*', '(0, 1e6]', 'Width of the box.', 'kind=box')
     call key(t, 'height', 'real', 'm', '*', '(0, 1e6]', 'Height of the box.', 'kind=box')
     call key(t, 'slope_height', 'real', 'm', '*', '(0, 1e5]', &
              'Height of the crest above the toe.', 'kind=slope')
     call key(t, 'slope_ratio', 'real', '', '*', '[0, 100]', &
-             'Horizontal distance per vertical metre of the face; 0 is a vertical cut.', 'kind=slope')
+             'Horizontal distance per vertical metre of the face; 0 is a vertical cut.', &
+             'kind=slope')
     call key(t, 'base_depth', 'real', 'm', '0', '[0, 1e5]', &
              'Depth of the ground below the toe.', 'kind=slope')
     call key(t, 'toe_distance', 'real', 'm', '0', '[0, 1e6]', &

@@ -16,10 +16,13 @@ contains
     type(table_t), intent(inout) :: t
 
     call group(t, 'soil', .true., .true., &
-               'A soil and where it lies; a later soil overrides an earlier one where they overlap.')
-    call key(t, 'name', 'string', '', '*', '', 'Name, used by &damage and &water and in the results.')
-    call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', 'Left end of its region; absent: unbounded.')
-    call key(t, 'to_x', 'real', 'm', '', '[-1e7, 1e7]', 'Right end of its region; absent: unbounded.')
+               'A soil and where it lies; where soils overlap, the later one counts.')
+    call key(t, 'name', 'string', '', '*', '', &
+        'Name, used by &damage and &water and in the results.')
+    call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', &
+        'Left end of its region; absent: unbounded.')
+    call key(t, 'to_x', 'real', 'm', '', '[-1e7, 1e7]', &
+        'Right end of its region; absent: unbounded.')
     call key(t, 'from_y', 'real', 'm', '', '[-1e7, 1e7]', 'Bottom of its layer; absent: unbounded.')
     call key(t, 'to_y', 'real', 'm', '', '[-1e7, 1e7]', 'Top of its layer; absent: unbounded.')
     call key(t, 'density_solid', 'real', 'kg/m3', '2650', '(0, 20000]', &
@@ -40,11 +43,13 @@ contains
     type(table_t), intent(inout) :: t
 
     call key(t, 'cohesion', 'real', 'Pa', '*', '[0, 1e12]', 'Cohesion c''.', plastic)
-    call key(t, 'friction_angle', 'real', 'deg', '*', '[0, 89]', 'Angle of friction phi''.', plastic)
+    call key(t, 'friction_angle', 'real', 'deg', '*', '[0, 89]', 'Angle of friction phi''.', &
+        plastic)
     call key(t, 'dilation_angle', 'real', 'deg', '0', '[0, 89]', &
              'Angle of dilation, not above friction_angle.', plastic)
     call key(t, 'fit', 'string', '', 'plane_strain', 'plane_strain|compression|extension', &
-             'Where the cone meets the Mohr-Coulomb pyramid; it changes a factor of safety.', plastic)
+             'Where the cone meets the Mohr-Coulomb pyramid; it changes a factor of safety.', &
+             plastic)
     call key(t, 'tension_cutoff', 'real', 'Pa', '', '[0, 1e12]', &
              'Largest mean tensile stress; absent: the apex of the cone.', plastic)
     call key(t, 'dilation_limit', 'real', '', '', '(0, 1e3]', &
@@ -58,7 +63,7 @@ contains
     call key(t, 'softening', 'string', '', 'none', 'none|linear|exponential|table', &
              'How strength falls with equivalent plastic strain.', plastic)
     call key(t, 'softening_strain', 'real', '', '*', '(0, 1e3]', &
-             'Equivalent plastic strain at the residual (linear) or its decay scale (exponential).', &
+             'Equivalent plastic strain at the residual (linear) or of decay (exponential).', &
              softens)
     call key(t, 'residual_cohesion', 'real', 'Pa', '=cohesion', '[0, 1e12]', &
              'Cohesion after softening.', softens)
@@ -83,7 +88,8 @@ contains
     call key(t, 'stress', 'string', '', 'net', 'net|bishop', &
              'Stress that the laws see: net, or Bishop''s effective stress (needed below water).')
     call key(t, 'suction_strength', 'string', '', 'none', 'none|phi_b|vanapalli', &
-             'Cohesion from suction, with net stress only (Bishop''s stress has it already).', plastic)
+             'Cohesion from suction, with net stress only (Bishop''s stress has it already).', &
+             plastic)
     call key(t, 'phi_b', 'real', 'deg', '*', '[0, 89]', &
              'Cohesion rises by tan(phi_b) per unit of suction.', 'suction_strength=phi_b')
     call key(t, 'suction_cohesion_max', 'real', 'Pa', '', '[0, 1e12]', &
@@ -115,7 +121,8 @@ contains
     call key(t, 'mazars_a', 'real', '', '*', '(0, 1.5]', 'A of Mazars'' law.', 'law=mazars')
     call key(t, 'mazars_b', 'real', '', '*', '(0, 1e6]', 'B of Mazars'' law.', 'law=mazars')
     call key(t, 'strength_ratio', 'real', '', '10', '[1, 1000]', &
-             'Compressive over tensile strength in the modified von Mises strain.', 'driver=von_mises')
+             'Compressive over tensile strength in the modified von Mises strain.', &
+             'driver=von_mises')
     call key(t, 'maximum', 'real', '', '0.99', '[0, 1)', 'Largest damage.')
     call key(t, 'split', 'string', '', 'full', 'full|deviatoric|tensile', &
              'Part of the stress that damage reduces; full also takes the confinement.')

@@ -48,7 +48,7 @@ contains
     call key(t, 'relative_conductivity_minimum', 'real', '', '1e-12', '(0, 0.1]', &
              'Smallest relative conductivity.')
     call key(t, 'specific_storage', 'real', '1/Pa', '1e-9', '(0, 1e-3]', &
-             'Water stored per volume of saturated soil and Pa, by compression of water and grains.')
+             'Water stored per volume of saturated soil and Pa, by compressibility.')
     call key(t, 'kozeny_carman', 'logical', '', '.false.', '', &
              'Conductivity follows porosity by Kozeny and Carman.')
   end subroutine keys_add_water
@@ -62,9 +62,11 @@ contains
     call key(t, 'name', 'string', '', '', '', 'Name, for messages and summaries.')
     call key(t, 'where', 'string', '', '*', 'left|right|bottom|top|face|surface|box|all', &
              'Which part: a side, the face of a slope, the surface (top and face), a box or all.')
-    call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', 'Left end of the box; absent: unbounded.', &
+    call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', &
+        'Left end of the box; absent: unbounded.', &
              'where=box')
-    call key(t, 'to_x', 'real', 'm', '', '[-1e7, 1e7]', 'Right end of the box; absent: unbounded.', &
+    call key(t, 'to_x', 'real', 'm', '', '[-1e7, 1e7]', &
+        'Right end of the box; absent: unbounded.', &
              'where=box')
     call key(t, 'from_y', 'real', 'm', '', '[-1e7, 1e7]', 'Bottom of the box; absent: unbounded.', &
              'where=box')
@@ -79,7 +81,8 @@ contains
     call key(t, 'velocity_y', 'real', 'm/s', '', '[-1e3, 1e3]', &
              'Prescribed velocity along y; absent: none.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
-    call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along y, upward positive.')
+    call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
+        'Traction along y, upward positive.')
     call key(t, 'pressure', 'real', 'Pa', '0', '[-1e10, 1e10]', &
              'Pressure normal to the boundary, positive inward.')
     call key(t, 'water', 'string', '', 'none', 'none|impermeable|head|flux|rain|seepage_face', &
@@ -101,7 +104,8 @@ contains
     type(table_t), intent(inout) :: t
     character(*), parameter :: timed = 'kind=storm|dynamic', still = 'kind=geostatic|storm'
 
-    call group(t, 'stage', .true., .true., 'A part of the run; stages follow in the order of the deck.')
+    call group(t, 'stage', .true., .true., &
+        'A part of the run; stages follow in the order of the deck.')
     call key(t, 'name', 'string', '', '*', '', 'Name, used by &boundary and in the results.')
     call key(t, 'kind', 'string', '', '*', 'geostatic|storm|dynamic', &
              'Relax to equilibrium; a storm of hours with soil in equilibrium; or real time.')
@@ -123,9 +127,10 @@ contains
     call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
              'Time step over the largest stable one.')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
-             'Displacement in one storm step that counts as failure; absent: lost equilibrium only.', &
+             'Displacement in a storm step that counts as failure; absent: none does.', &
              'kind=storm')
-    call key(t, 'after_failure', 'string', '', 'dynamic_next', 'dynamic_next|stop', &
+    call key(t, 'after_failure', 'string', '', &
+             '~dynamic_next if a dynamic stage follows, else stop', 'dynamic_next|stop', &
              'On failure go on with the next dynamic stage, or stop the run.', 'kind=storm')
     call key(t, 'only_after_failure', 'logical', '', '.false.', '', &
              'Skip this stage unless the storm before it ended in failure.', 'kind=dynamic')

@@ -29,7 +29,8 @@ contains
     call deck_table(store%table)
     call entries_of(text, entries, messages)
     if (size(entries) == 0) then
-      if (messages_errors(messages) == 0) call messages_error(messages, 0, 'the deck has no groups; &
+      if (messages_errors(messages) == 0) call messages_error(messages, 0, &
+          'the deck has no groups; &
         &allowed: '//group_list(store))
       return
     end if
@@ -66,7 +67,8 @@ contains
     end if
     earlier = store_first(store, entry%name)
     if (earlier > 0 .and. .not. store%table%group(group)%repeatable) then
-      call messages_error(messages, entry%line, '&'//entry%name//': repeated group, first in line '// &
+      call messages_error(messages, entry%line, '&'//entry%name// &
+          ': repeated group, first in line '// &
         text_of(store%section(earlier)%line)//'; allowed: one &'//entry%name)
     end if
     call store_add_section(store, group, entry%line, section)
@@ -85,7 +87,8 @@ contains
     key = table_key_index(store%table, group, entry%name)
     start = '&'//store%table%group(group)%name//' '//entry%name//' = '//entry_source(entry)//': '
     if (key == 0 .and. index(entry%name, '(') > 0) then
-      call messages_error(messages, entry%line, start//'no indices; allowed: key = value, value, ...')
+      call messages_error(messages, entry%line, start// &
+          'no indices; allowed: key = value, value, ...')
       return
     else if (key == 0) then
       call messages_error(messages, entry%line, start//'unknown key'// &
@@ -133,7 +136,8 @@ contains
     integer, intent(in) :: section
     integer :: k, other
 
-    associate (here => store%section(section), group => store%table%group(store%section(section)%group))
+    associate (here => store%section(section), group => &
+        store%table%group(store%section(section)%group))
       do k = 1, size(here%value)
         if (here%value(k)%is_given) cycle
         associate (key => store%table%key(group%first + k - 1))
@@ -159,13 +163,15 @@ contains
     integer :: k
     logical :: is_used
 
-    associate (here => store%section(section), group => store%table%group(store%section(section)%group))
+    associate (here => store%section(section), group => &
+        store%table%group(store%section(section)%group))
       do k = 1, size(here%value)
         associate (key => store%table%key(group%first + k - 1))
           is_used = store_is_used(store, section, k)
           if (key_is_required(key) .and. is_used .and. .not. here%value(k)%is_given) then
             if (group%required .and. here%line == 0) cycle
-            call report_error(store, section, key%name, 'missing key'//used_when(key%when), messages)
+            call report_error(store, section, key%name, 'missing key'//used_when(key%when), &
+                messages)
           else if (here%value(k)%is_given .and. .not. is_used) then
             if (controller_is_wrong(store, section, key%when)) cycle
             call report_warning(store, section, key%name, 'has no effect; used only'// &

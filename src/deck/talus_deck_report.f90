@@ -8,7 +8,7 @@ module talus_deck_report
   use talus_deck_store, only: store_t, store_value
   implicit none
   private
-  public :: report_error, report_warning, report_sentence, value_text, number_text
+  public :: report_error, report_warning, report_sentence, value_text, number_text, text_padded
 
 contains
 
@@ -56,7 +56,8 @@ contains
     end if
     text = text//': '//problem
     if (.not. present(allowed)) then
-      text = text//'; allowed: '//key_allowed(store%table%key(store%table%group(group)%first + k - 1))
+      text = text//'; allowed: '// &
+          key_allowed(store%table%key(store%table%group(group)%first + k - 1))
     else if (len(allowed) > 0) then
       text = text//'; allowed: '//allowed
     end if
@@ -117,6 +118,18 @@ contains
       if (abs(back - value) <= 0.0_dp) return
     end do
   end function number_text
+
+  !> Text with spaces up to a width.
+  pure function text_padded(text, width) result(cell)
+    character(*), intent(in) :: text
+    integer, intent(in) :: width
+    character(:), allocatable :: cell
+
+    cell = text
+    do while (len(cell) < width)
+      cell = cell//' '
+    end do
+  end function text_padded
 
   !> Text in single quotes, with those inside doubled.
   pure function quoted(text) result(literal)

@@ -72,7 +72,8 @@ contains
         cursor%at = cursor%at + 1
         return
       end if
-      call messages_error(messages, token%line, ''''//token%text//''' stands outside any group; '// &
+      call messages_error(messages, token%line, ''''//token%text// &
+          ''' stands outside any group; '// &
                           'allowed: comments, and groups from &name to /')
     end associate
     do while (tokens(cursor%at)%kind /= token_group .and. tokens(cursor%at)%kind /= token_end)
@@ -144,7 +145,8 @@ contains
     end do
     if (is_wrong .or. size(entry%value) == 0) then
       call messages_error(messages, entry%line, '&'//cursor%group//' '//entry%name//' = '// &
-        entry_source(entry)//': a value is missing; allowed: key = value or key = value, value, ...')
+        entry_source(entry)// &
+        ': a value is missing; allowed: key = value or key = value, value, ...')
     end if
     call append(entries, cursor%count, entry)
   end subroutine scan_key
@@ -197,7 +199,8 @@ contains
     cursor%group = text_lower(token%text)
     cursor%line = token%line
     if (cursor%group == '' .or. cursor%group == 'end') then
-      call messages_error(messages, token%line, '&'//cursor%group//' opens no group; allowed: &name')
+      call messages_error(messages, token%line, '&'//cursor%group// &
+          ' opens no group; allowed: &name')
     end if
     entry%is_group = .true.
     entry%line = token%line

@@ -136,7 +136,8 @@ contains
       content = content//text(at:at)
       at = at + 1
     end do
-    call messages_error(messages, line, 'text '//quote//trim(content)//' has no closing quote on its &
+    call messages_error(messages, line, 'text '//quote//trim(content)// &
+        ' has no closing quote on its &
                         &line; allowed: '//quote//'...'//quote)
   end subroutine read_quoted
 

@@ -9,7 +9,7 @@ module talus_deck_types
   private
   public :: deck_t, run_t, geometry_t, nodes_t, smoothing_t, soil_t, damage_t, water_t, initial_t
   public :: boundary_t, stage_t, output_t, deck_given, deck_soil_index, deck_damage_index
-  public :: deck_water_index, deck_acts_in
+  public :: deck_water_index, deck_acts_in, deck_exceeds, deck_moves_soil
 
   !> Longest name of a soil, boundary or stage.
   integer, parameter, public :: name_length = 64
@@ -119,7 +119,8 @@ module talus_deck_types
 
   type :: deck_t
     character(:), allocatable :: path          !! file the deck was read from
-    character(:), allocatable :: folder        !! its folder with a final '/', '' for the working one
+    character(:), &
+        allocatable :: folder        !! its folder with a final '/', '' for the working one
     character(:), allocatable :: text          !! the file as it was read
     character(:), allocatable :: resolved      !! the same deck with every default written out
     type(run_t) :: run
@@ -143,6 +144,14 @@ contains
 
     deck_given = .not. ieee_is_nan(value)
   end function deck_given
+
+  !> True when both values are given and the first is larger.
+  elemental logical function deck_exceeds(value, limit)
+    real(dp), intent(in) :: value, limit !! real components of the deck
+
+    deck_exceeds = .false.
+    if (deck_given(value) .and. deck_given(limit)) deck_exceeds = value > limit
+  end function deck_exceeds
 
   !> Position of a soil by name, 0 when there is none.
   pure integer function deck_soil_index(deck, name) result(found)
@@ -179,6 +188,17 @@ contains
       if (deck%water(found)%soil == '') return
     end do
   end function deck_water_index
+
+  !> True when any stage solves the soil.
+  pure logical function deck_moves_soil(deck)
+    type(deck_t), intent(in) :: deck
+    integer :: i
+
+    deck_moves_soil = .false.
+    do i = 1, size(deck%stage)
+      if (deck%stage(i)%solve == 'soil' .or. deck%stage(i)%solve == 'both') deck_moves_soil = .true.
+    end do
+  end function deck_moves_soil
 
   !> True when a boundary acts in a stage.
   pure logical function deck_acts_in(boundary, stage)

@@ -1,0 +1,206 @@
+! SPDX-License-Identifier: MIT
+!> Contradictions in &boundary.
+module talus_deck_check_boundary
+  use talus_kinds, only: dp
+  use talus_deck_messages, only: messages_t
+  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_acts_in
+  use talus_deck_store, only: store_t, store_sections, store_value
+  use talus_deck_check_soil, only: check_region
+  use talus_deck_check_water, only: check_file
+  use talus_deck_report, only: complain => report_error, warn => report_warning
+  implicit none
+  private
+  public :: check_boundaries
+
+contains
+
+  !> All &boundary groups.
+  subroutine check_boundaries(store, deck, messages)
+    type(store_t), intent(in) :: store
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer, allocatable :: at(:)
+    integer :: i
+
+    call store_sections(store, 'boundary', at)
+    do i = 1, size(at)
+      associate (boundary => deck%boundary(i))
+        call check_where(store, at(i), boundary, deck, messages)
+        call check_stage_names(store, at(i), boundary, deck, messages)
+        call check_motion(store, at(i), boundary, messages)
+        call check_water(store, at(i), boundary, deck, messages)
+        call check_effect(store, at(i), boundary, messages)
+        call check_repeated(store, at(i), i, deck, messages)
+      end associate
+    end do
+  end subroutine check_boundaries
+
+  subroutine check_where(store, section, boundary, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+
+    if (boundary%where == 'box') then
+      call check_region(store, section, boundary%from_x, boundary%to_x, boundary%from_y, &
+                        boundary%to_y, messages)
+    end if
+    if (boundary%where == 'face' .and. deck%geometry%kind == 'box') then
+      call complain(store, section, 'where', 'a box has no slope face', messages, &
+                    'left | right | bottom | top | surface | box | all')
+    end if
+  end subroutine check_where
+
+  subroutine check_stage_names(store, section, boundary, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    character(:), allocatable :: list
+    logical :: is_known
+    integer :: i, j
+
+    list = ''
+    do j = 1, size(deck%stage)
+      list = list//', '''//deck%stage(j)%name//''''
+    end do
+    do i = 1, size(boundary%stages)
+      is_known = .false.
+      do j = 1, size(deck%stage)
+        if (deck%stage(j)%name == boundary%stages(i)) is_known = .true.
+      end do
+      if (is_known) cycle
+      call complain(store, section, 'stages', 'unknown stage '''//trim(boundary%stages(i))//'''', &
+                    messages, list(3:))
+    end do
+  end subroutine check_stage_names
+
+  !> A velocity already holds its direction.
+  subroutine check_motion(store, section, boundary, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(messages_t), intent(inout) :: messages
+
+    associate (held => boundary%displacement)
+      if (deck_given(boundary%velocity_x) .and. (held == 'fixed' .or. held == 'roller_x')) then
+        call complain(store, section, 'velocity_x', 'displacement = '''//held// &
+            ''' holds x at rest', &
+                      messages, 'velocity_x with ''free'' or ''roller_y''')
+      end if
+      if (deck_given(boundary%velocity_y) .and. (held == 'fixed' .or. held == 'roller_y')) then
+        call complain(store, section, 'velocity_y', 'displacement = '''//held// &
+            ''' holds y at rest', &
+                      messages, 'velocity_y with ''free'' or ''roller_x''')
+      end if
+    end associate
+  end subroutine check_motion
+
+  subroutine check_water(store, section, boundary, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    logical :: is_solved
+    integer :: i
+
+    if (boundary%water == 'none' .or. boundary%water == '') return
+    if (size(deck%water) == 0) then
+      call complain(store, section, 'water', 'there is no &water', messages, &
+          '''none'' without &water')
+      return
+    end if
+    is_solved = .false.
+    do i = 1, size(deck%stage)
+      if (deck%stage(i)%solve == 'soil') cycle
+      if (deck_acts_in(boundary, deck%stage(i)%name)) is_solved = .true.
+    end do
+    if (.not. is_solved) call warn(store, section, 'water', 'no stage in which it acts solves '// &
+                                   'seepage', messages)
+    if (boundary%water == 'rain') call check_rain(store, section, boundary, messages)
+  end subroutine check_water
+
+  !> Rain falls on the surface and has one source.
+  subroutine check_rain(store, section, boundary, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(messages_t), intent(inout) :: messages
+
+    if (boundary%where == 'bottom' .or. boundary%where == 'left' .or. boundary%where == 'right') &
+        then
+      call complain(store, section, 'water', 'rain falls on '''//boundary%where//'''', messages, &
+                    '''rain'' with where = surface | top | face | box | all')
+    end if
+    if (deck_given(boundary%rain) .and. len(boundary%hydrograph) > 0) then
+      call complain(store, section, 'hydrograph', 'rain is given as well', messages, &
+                    'one of rain and hydrograph')
+    else if (.not. deck_given(boundary%rain) .and. len(boundary%hydrograph) == 0) then
+      if (.not. is_wrong('rain') .and. .not. is_wrong('hydrograph')) then
+        call complain(store, section, 'water', 'how much rain is not said', messages, &
+                      'rain or hydrograph with it')
+      end if
+    end if
+    call check_file(store, section, 'hydrograph', boundary%hydrograph, messages)
+
+  contains
+
+    logical function is_wrong(name)
+      character(*), intent(in) :: name
+
+      is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
+    end function is_wrong
+  end subroutine check_rain
+
+  !> A group that holds, loads and wets nothing.
+  subroutine check_effect(store, section, boundary, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(messages_t), intent(inout) :: messages
+    real(dp) :: loads(3)
+
+    if (boundary%displacement /= 'free' .or. boundary%water /= 'none') return
+    if (deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y)) return
+    loads = [boundary%traction_x, boundary%traction_y, boundary%pressure]
+    if (.not. all(deck_given(loads))) return
+    if (maxval(abs(loads)) > 0.0_dp) return
+    call warn(store, section, 'where', 'nothing acts on this boundary', messages)
+  end subroutine check_effect
+
+  !> The same part twice in one stage: the later one wins, which may not be meant.
+  subroutine check_repeated(store, section, i, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section, i          !! i: the &boundary
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: j, k
+
+    associate (this => deck%boundary(i))
+      if (this%where == 'box' .or. this%where == '') return
+      do j = 1, i - 1
+        associate (that => deck%boundary(j))
+          if (that%where /= this%where) cycle
+          do k = 1, size(deck%stage)
+            if (.not. deck_acts_in(this, deck%stage(k)%name)) cycle
+            if (.not. deck_acts_in(that, deck%stage(k)%name)) cycle
+            if (that%water /= 'none' .and. this%water /= 'none') then
+              call warn(store, section, 'water', &
+                  'overrides an earlier &boundary of the same part', &
+                        messages)
+              return
+            else if (that%displacement /= 'free' .and. this%displacement /= 'free') then
+              call warn(store, section, 'displacement', &
+                  'an earlier &boundary also holds this part', &
+                        messages)
+              return
+            end if
+          end do
+        end associate
+      end do
+    end associate
+  end subroutine check_repeated
+end module talus_deck_check_boundary

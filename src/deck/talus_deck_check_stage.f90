@@ -1,0 +1,170 @@
+! SPDX-License-Identifier: MIT
+!> Contradictions in &stage, and between stages.
+module talus_deck_check_stage
+  use talus_kinds, only: dp
+  use talus_deck_messages, only: messages_t
+  use talus_deck_types, only: deck_t, stage_t, deck_given, deck_exceeds, deck_acts_in
+  use talus_deck_store, only: store_t, store_sections
+  use talus_deck_report, only: complain => report_error, warn => report_warning
+  implicit none
+  private
+  public :: check_stages
+
+contains
+
+  !> All &stage groups.
+  subroutine check_stages(store, deck, messages)
+    type(store_t), intent(in) :: store
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer, allocatable :: at(:)
+    integer :: i, j
+
+    call store_sections(store, 'stage', at)
+    do i = 1, size(at)
+      associate (stage => deck%stage(i))
+        do j = 1, i - 1
+          if (deck%stage(j)%name == stage%name .and. len(stage%name) > 0) call complain(store, &
+              at(i), &
+            'name', 'another stage has this name', messages, 'a name of its own')
+        end do
+        call check_solve(store, at(i), stage, deck, messages)
+        call check_clock(store, at(i), stage, messages)
+        call check_order(store, at(i), i, deck, messages)
+        if (stage%solve == 'soil' .or. stage%solve == 'both') then
+          call check_support(store, at(i), stage, deck, messages)
+        end if
+      end associate
+    end do
+  end subroutine check_stages
+
+  !> What a stage of its kind can solve.
+  subroutine check_solve(store, section, stage, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(stage_t), intent(in) :: stage
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+
+    if (stage%solve == 'seepage' .or. stage%solve == 'both') then
+      if (size(deck%water) == 0) then
+        call complain(store, section, 'solve', 'there is no &water', messages, &
+            '''soil'' without &water')
+      else if (stage%kind == 'geostatic') then
+        call complain(store, section, 'solve', &
+            'a geostatic stage keeps the initial pore pressure', &
+                      messages, '''soil'' with kind = ''geostatic''')
+      end if
+    end if
+    if (stage%kind == 'dynamic' .and. stage%solve == 'seepage') then
+      call complain(store, section, 'solve', 'seepage alone has no dynamics', messages, &
+                    '''seepage'' with kind = ''storm''')
+    end if
+    if (stage%kind == 'dynamic' .and. stage%mass_scaling) then
+      call warn(store, section, 'mass_scaling', &
+          'a dynamic stage without its true mass: times and '// &
+                'velocities mean nothing', messages)
+    end if
+  end subroutine check_solve
+
+  subroutine check_clock(store, section, stage, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(stage_t), intent(in) :: stage
+    type(messages_t), intent(inout) :: messages
+
+    if (stage%kind /= 'storm') return
+    if (deck_exceeds(stage%storm_step, stage%duration)) then
+      call complain(store, section, 'storm_step', 'longer than the stage', messages, &
+                    'storm_step <= duration')
+    end if
+    if (deck_exceeds(stage%storm_step_minimum, stage%storm_step)) then
+      call complain(store, section, 'storm_step_minimum', 'larger than storm_step', messages, &
+                    'storm_step_minimum <= storm_step')
+    end if
+  end subroutine check_clock
+
+  !> What comes before and after a stage.
+  subroutine check_order(store, section, i, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section, i          !! i: the stage
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    logical :: can_start
+    integer :: j
+
+    associate (stage => deck%stage(i))
+      select case (stage%kind)
+      case ('geostatic')
+        if (i > 1) call warn(store, section, 'kind', 'a geostatic stage after another one', &
+            messages)
+      case ('storm')
+        if (stage%after_failure == 'dynamic_next' .and. &
+            .not. any(kind_is(deck%stage(i+1:), 'dynamic'))) then
+          call complain(store, section, 'after_failure', 'no dynamic stage follows', messages, &
+                        '''stop'', or a later &stage with kind = ''dynamic''')
+        end if
+        if (stage%solve /= 'seepage' .and. deck%initial%stress == 'none' .and. &
+            deck_exceeds(deck%run%gravity, 0.0_dp) .and. &
+            .not. any(kind_is(deck%stage(:i-1), 'geostatic'))) then
+          call warn(store, section, 'kind', &
+              'no geostatic stage before it and no initial stress: '// &
+                    'settlement under the own weight comes with the storm', messages)
+        end if
+      case ('dynamic')
+        if (.not. stage%only_after_failure) return
+        can_start = .false.
+        do j = 1, i - 1
+          if (deck%stage(j)%kind /= 'storm' .or. deck%stage(j)%solve == 'seepage') cycle
+          if (deck%stage(j)%after_failure == 'dynamic_next') can_start = .true.
+        end do
+        if (.not. can_start) call complain(store, section, 'only_after_failure', &
+            'no storm before it '// &
+          'can fail', messages, '.true. after a storm that solves the soil')
+      end select
+    end associate
+  end subroutine check_order
+
+  !> Which stages are of a kind.
+  elemental logical function kind_is(stage, kind)
+    type(stage_t), intent(in) :: stage
+    character(*), intent(in) :: kind
+
+    kind_is = stage%kind == kind
+  end function kind_is
+
+  !> A body under gravity must be held to find rest.
+  subroutine check_support(store, section, stage, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(stage_t), intent(in) :: stage
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    logical :: holds_x, holds_y
+    integer :: i
+
+    if (.not. deck_exceeds(deck%run%gravity, 0.0_dp)) return
+    holds_x = .false.
+    holds_y = .false.
+    do i = 1, size(deck%boundary)
+      associate (boundary => deck%boundary(i))
+        if (.not. deck_acts_in(boundary, stage%name)) cycle
+        if (boundary%displacement == '') return
+        holds_x = holds_x .or. boundary%displacement == 'fixed' .or. &
+                  boundary%displacement == 'roller_x' .or. deck_given(boundary%velocity_x)
+        holds_y = holds_y .or. boundary%displacement == 'fixed' .or. &
+                  boundary%displacement == 'roller_y' .or. deck_given(boundary%velocity_y)
+      end associate
+    end do
+    if (stage%kind == 'dynamic') then
+      if (.not. holds_y) call warn(store, section, 'name', &
+          'no &boundary holds y in this stage: the '// &
+                                   'body falls freely', messages)
+      return
+    end if
+    if (.not. holds_y) call complain(store, section, 'name', 'no &boundary holds y in this stage', &
+      messages, 'a &boundary with displacement = ''fixed'' or ''roller_y''')
+    if (.not. holds_x) call complain(store, section, 'name', 'no &boundary holds x in this stage', &
+      messages, 'a &boundary with displacement = ''fixed'' or ''roller_x''')
+  end subroutine check_support
+end module talus_deck_check_stage

@@ -1,0 +1,143 @@
+! SPDX-License-Identifier: MIT
+!> Contradictions in &water and &initial.
+module talus_deck_check_water
+  use talus_kinds, only: dp
+  use talus_const, only: mm_per_hour
+  use talus_deck_messages, only: messages_t
+  use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_soil_index, deck_water_index, &
+    deck_moves_soil
+  use talus_deck_store, only: store_t, store_sections, store_first
+  use talus_deck_extent, only: extent_t, extent_of
+  use talus_deck_file, only: file_problem
+  use talus_deck_check_soil, only: soil_list
+  use talus_deck_report, only: complain => report_error, warn => report_warning
+  implicit none
+  private
+  public :: check_waters, check_initial, check_file
+
+contains
+
+  !> All &water groups.
+  subroutine check_waters(store, deck, messages)
+    type(store_t), intent(in) :: store
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer, allocatable :: at(:)
+    integer :: i, j
+
+    call store_sections(store, 'water', at)
+    if (size(at) == 0) return
+    do i = 1, size(at)
+      associate (water => deck%water(i))
+        if (len(water%soil) > 0 .and. deck_soil_index(deck, water%soil) == 0) then
+          call complain(store, at(i), 'soil', 'unknown soil', messages, soil_list(deck))
+        end if
+        do j = 1, i - 1
+          if (deck%water(j)%soil == water%soil) call complain(store, at(i), 'soil', &
+            'another &water already has this soil', messages, 'one &water a soil')
+        end do
+        if (deck_exceeds(water%saturation_residual, water%saturation_maximum - 1.0e-6_dp)) then
+          call complain(store, at(i), 'saturation_residual', 'not below saturation_maximum', &
+                        messages, 'saturation_residual < saturation_maximum')
+        end if
+        if (water%retention == 'van_genuchten' .and. deck_exceeds(2.0_dp, water%n) .and. &
+            deck_exceeds(1.0e-6_dp, water%air_entry_cut)) then
+          call warn(store, at(i), 'air_entry_cut', &
+              'with n < 2 the conductivity falls infinitely '// &
+                    'fast at saturation; 0.01 to 0.02 m is usual', messages)
+        end if
+        if (deck_exceeds(max(water%conductivity_x, water%conductivity_y), 0.1_dp)) then
+          call warn(store, at(i), 'conductivity_x', 'very large; the unit is m/s', messages)
+        end if
+        if (water%retention == 'table') call check_file(store, at(i), 'file', water%file, messages)
+      end associate
+    end do
+    call store_sections(store, 'soil', at)
+    do i = 1, size(at)
+      if (deck_water_index(deck, deck%soil(i)%name) > 0) cycle
+      call complain(store, at(i), 'name', 'this soil has no &water although others have', &
+          messages, &
+                    'a &water for it, or one &water with a blank soil')
+    end do
+  end subroutine check_waters
+
+  !> A file the deck names must open and hold something. Its content is read later.
+  subroutine check_file(store, section, name, path, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    character(*), intent(in) :: name, path     !! key; path that opens from the working folder
+    type(messages_t), intent(inout) :: messages
+    character(:), allocatable :: problem
+    integer :: split
+
+    if (len(path) == 0) return
+    problem = file_problem(path)
+    if (len(problem) == 0) return
+    split = index(problem, '; allowed: ')
+    call complain(store, section, name, problem(:split-1), messages, problem(split+11:))
+  end subroutine check_file
+
+  !> &initial against &water, the stages and the body.
+  subroutine check_initial(store, deck, messages)
+    type(store_t), intent(in) :: store
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: section
+
+    section = store_first(store, 'initial')
+    associate (initial => deck%initial)
+      if (initial%pore_pressure == 'none') then
+        if (size(deck%water) > 0) call complain(store, section, 'pore_pressure', &
+            'with &water the '// &
+          'initial pore pressure must be stated', messages, &
+          '''uniform'', ''hydrostatic'' or ''steady''')
+        return
+      end if
+      if (size(deck%water) == 0 .and. len(initial%pore_pressure) > 0) then
+        call complain(store, section, 'pore_pressure', 'there is no &water', messages, &
+                      '''none'' without &water')
+        return
+      end if
+      if (initial%pore_pressure == 'uniform') return
+      call check_water_table(store, section, deck, messages)
+    end associate
+  end subroutine check_initial
+
+  subroutine check_water_table(store, section, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    type(extent_t) :: extent
+    real(dp) :: highest
+    integer :: i
+
+    extent = extent_of(deck%geometry)
+    if (.not. extent%is_known) return
+    associate (initial => deck%initial)
+      if (.not. all(deck_given([initial%water_table, initial%water_table_right]))) return
+      highest = max(initial%water_table, initial%water_table_right)
+      if (highest > extent%top) then
+        call warn(store, section, 'water_table', &
+            'above the body; water standing on the ground has '// &
+                  'no weight here', messages)
+      end if
+      if (highest > extent%bottom .and. deck_moves_soil(deck)) then
+        do i = 1, size(deck%soil)
+          if (deck%soil(i)%stress /= 'net' .or. deck%soil(i)%from_y >= highest) cycle
+          call warn(store, section, 'water_table', 'soil '''//deck%soil(i)%name// &
+              ''' has stress = '// &
+                    '''net'', which knows no uplift below the water table', messages)
+        end do
+      end if
+      if (initial%pore_pressure /= 'steady') return
+      do i = 1, size(deck%water)
+        if (.not. deck_exceeds(initial%antecedent_rain*mm_per_hour, deck%water(i)%conductivity_y)) &
+            cycle
+        call warn(store, section, 'antecedent_rain', &
+            'more than the saturated conductivity_y: the '// &
+                  'rest runs off', messages)
+      end do
+    end associate
+  end subroutine check_water_table
+end module talus_deck_check_water

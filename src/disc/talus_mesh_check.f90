@@ -26,7 +26,6 @@ contains
     real(dp) :: along(2)
     integer :: i, k, n
 
-    call check_corners(mesh, status)
     n = size(mesh%boundary_edge, 2)
     allocate (middle(2, n), reach(n))
     do i = 1, n
@@ -49,6 +48,7 @@ contains
           'Neighbouring elements must share whole edges and their nodes')
       end do
     end do
+    call check_corners(mesh, status)
   end subroutine mesh_check_boundary
 
   pure function pair_text(pair) result(text)
@@ -76,29 +76,29 @@ contains
     end do
   end subroutine check_corners
 
-  !> True when two boundary edges touch other than end to end.
+  !> True when two boundary edges touch other than end to end, or leave a node in one direction.
   pure logical function edges_touch(mesh, a, b) result(touch)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: a(2), b(2) !! nodes of the edges
     real(dp) :: p(2), q(2), room
+    integer :: i, j
 
     associate (xa => mesh%x(:, a), xb => mesh%x(:, b))
+      do i = 1, 2
+        do j = 1, 2
+          if (a(i) /= b(j)) cycle
+          p = xa(:, 3-i) - xa(:, i)
+          q = xb(:, 3-j) - xb(:, j)
+          touch = dot_product(p, q) > 0.0_dp .and. &
+            abs(p(1)*q(2) - p(2)*q(1)) < touching*norm2(p)*norm2(q)
+          return
+        end do
+      end do
       room = touching*min(norm2(xa(:, 2) - xa(:, 1)), norm2(xb(:, 2) - xb(:, 1)))
-      if (a(2) == b(1) .or. a(1) == b(2)) then
-        p = xa(:, 1) - xa(:, 2)
-        q = xb(:, 2) - xb(:, 1)
-        if (a(1) == b(2)) then
-          p = -p
-          q = -q
-        end if
-        touch = dot_product(p, q) > 0.0_dp .and. &
-          abs(p(1)*q(2) - p(2)*q(1)) < touching*norm2(p)*norm2(q)
-      else
-        touch = distance(xa(:, 1), xb) < room .or. distance(xa(:, 2), xb) < room .or. &
-          distance(xb(:, 1), xa) < room .or. distance(xb(:, 2), xa) < room .or. &
-          (side(xa(:, 1), xb)*side(xa(:, 2), xb) < 0.0_dp .and. &
-           side(xb(:, 1), xa)*side(xb(:, 2), xa) < 0.0_dp)
-      end if
+      touch = distance(xa(:, 1), xb) < room .or. distance(xa(:, 2), xb) < room .or. &
+        distance(xb(:, 1), xa) < room .or. distance(xb(:, 2), xa) < room .or. &
+        (side(xa(:, 1), xb)*side(xa(:, 2), xb) < 0.0_dp .and. &
+         side(xb(:, 1), xa)*side(xb(:, 2), xa) < 0.0_dp)
     end associate
   end function edges_touch
 

@@ -93,7 +93,7 @@ contains
       end if
       call word_real(reader%word(1), mesh%x(1, i), ok)
       if (ok) call word_real(reader%word(2), mesh%x(2, i), ok)
-      if (.not. ok) call report(reader, 'x and y must be finite numbers [m]')
+      if (.not. ok) call report(reader, 'x and y must be numbers [m] like 1.5 or 2e-3')
       if (.not. allocated(mesh%soil)) cycle
       call word_integer(reader%word(3), mesh%soil(i), ok)
       if (ok) ok = mesh%soil(i) >= 1
@@ -261,17 +261,22 @@ contains
     end do
   end subroutine split_words
 
+  !> Numbers with an exponent of two digits at most, so that none overflows.
   pure subroutine word_real(word, value, ok)
     character(*), intent(in) :: word
     real(dp), intent(out) :: value
     logical, intent(out) :: ok
-    integer :: error
+    integer :: error, split
 
     value = 0.0_dp
-    error = 1
-    if (verify(trim(word), '0123456789+-.eEdD') == 0) read (word, *, iostat=error) value
+    split = scan(word//'e', 'eEdD')
+    ok = verify(trim(word), '0123456789+-.eEdD') == 0 .and. split > 1
+    if (ok) ok = scan(word(2:split-1), '+-') == 0
+    if (ok .and. split <= len_trim(word)) &
+      ok = len_trim(word) - scan(word, 'eEdD+-', back=.true.) <= 2
+    if (.not. ok) return
+    read (word, *, iostat=error) value
     ok = error == 0
-    if (ok) ok = abs(value) <= huge(value)
   end subroutine word_real
 
   pure subroutine word_integer(word, value, ok)

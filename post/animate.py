@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Animation (GIF) of one field on the deformed shape, one colour scale throughout."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from PIL import Image
+
+from talus_map import FieldMap, FieldScale, add_map_options, default_field, view_of
+from talus_style import figure_path, parser_of, run_main, time_text
+
+
+def draw(result, arguments):
+    """Draw and save; returns the file's name."""
+    snapshots = result.numbered()
+    if len(snapshots) > arguments.frames:
+        pick = np.linspace(0, len(snapshots) - 1, arguments.frames).round().astype(int)
+        snapshots = [snapshots[i] for i in pick]
+    field = arguments.field or default_field(result)
+    scale = FieldScale(result, field, snapshots, arguments.limits)
+    (x0, x1), (y0, y1) = view_of(result, snapshots, arguments.deformed)
+    width = 7.0
+    height = min(7.0, max(2.2, (width - 1.5) * (y1 - y0) / (x1 - x0) + 0.8))
+    figure, axes = plt.subplots(figsize=(width, height), dpi=arguments.dpi)
+    field_map = FieldMap(axes, result, scale, arguments.deformed)
+    cells = field_map.show(snapshots[0])
+    axes.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="x [m]", ylabel="y [m]", title=" ")
+    scale.add_bar(figure, cells, cax=axes.inset_axes([1.02, 0.0, 0.02, 1.0]))
+    figure.canvas.draw()
+    figure.set_layout_engine("none")
+    frames = []
+    for snapshot in snapshots:
+        field_map.show(snapshot)
+        axes.set_title(time_text(result, snapshot))
+        figure.canvas.draw()
+        frames.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()))
+    plt.close(figure)
+    path = arguments.output or figure_path(result.path, field, ".gif")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    step = round(1000 / arguments.rate)
+    # One palette for all frames, from the last one, which shows most colours.
+    palette = frames[-1].quantize(255, method=Image.Quantize.MEDIANCUT)
+    frames = [f.quantize(palette=palette, dither=Image.Dither.NONE) for f in frames]
+    frames[0].save(
+        path,
+        save_all=True,
+        append_images=frames[1:],
+        duration=[step] * (len(frames) - 1) + [max(1500, step)],
+        loop=0,
+        optimize=False,
+    )
+    return path
+
+
+def parser():
+    """Command line."""
+    options = parser_of(__doc__)
+    options.set_defaults(dpi=110.0)
+    add_map_options(options)
+    options.add_argument("--rate", type=float, default=8.0, help="frames per second (8)")
+    options.add_argument("--frames", type=int, default=120, help="at most this many frames (120)")
+    return options
+
+
+if __name__ == "__main__":
+    run_main(parser(), draw)

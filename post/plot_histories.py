@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Largest displacement, energies and the energy error against time, one column a stage."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from talus_result import ResultError
+from talus_style import LINES, display_units, figure_path, parser_of, run_main, save, time_scale
+
+ORDER = ("external", "kinetic", "strain", "plastic", "damage", "damping", "stabilisation")
+
+
+def stages_of(history):
+    """Names and row ranges of the stages, in order."""
+    stage = history["stage"]
+    starts = np.flatnonzero(np.r_[True, stage[1:] != stage[:-1]])
+    ends = np.r_[starts[1:], len(stage)]
+    return [(stage[a], slice(a, b)) for a, b in zip(starts, ends) if b - a > 1]
+
+
+def rows_of(result, history):
+    """Rows of panels: label, column names, units, logarithmic or not."""
+    units = {name: result.history_units(name) for name in history}
+    energies = [n for n in history if units[n].startswith("J") and "error" not in n]
+    energies.sort(key=lambda n: next((k for k, w in enumerate(ORDER) if w in n), len(ORDER)))
+    moved = [n for n in history if units[n] == "m" and "displacement" in n]
+    wrong = [n for n in history if n == "energy_error"]
+    groups = (("Displacement", moved, True), ("Energy", energies, False),
+              ("Relative energy error", wrong, True))
+    return [(label, names, units[names[0]], log) for label, names, log in groups if names]
+
+
+def label_of(name, group):
+    """Short label of a column in its panel: 'energy_kinetic' is 'kinetic'."""
+    words = [w for w in name.split("_") if w not in (group.lower(), "work")]
+    return " ".join(words) or name
+
+
+def draw(result, arguments):
+    """Draw and save; returns the file's name."""
+    history = result.history()
+    stages = stages_of(history)
+    rows = rows_of(result, history)
+    if not rows or not stages:
+        raise ResultError(f"{result.path}: the history has no displacements and no energies")
+    figure, grid = plt.subplots(
+        len(rows),
+        len(stages),
+        figsize=(7.4, 0.5 + 2.0 * len(rows)),
+        sharey="row",
+        sharex="col",
+        squeeze=False,
+    )
+    for row, (group, names, units, log) in enumerate(rows):
+        largest = max(np.nanmax(np.abs(history[name]), initial=0.0) for name in names)
+        factor, shown = display_units(units, largest)
+        floor = 1e-4 * largest * factor
+        for column, (stage, part) in enumerate(stages):
+            axes = grid[row, column]
+            time = history["time"][part] - history["time"][part][0]
+            scale, unit = time_scale(time[-1])
+            for name, colour in zip(names, LINES * 4):
+                values = history[name][part] * factor
+                if log:
+                    values = np.where(np.abs(values) > floor, np.abs(values), np.nan)
+                axes.plot(time * scale, values, color=colour, label=label_of(name, group))
+            if log:
+                axes.set_yscale("log")
+            axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+            axes.grid(True)
+            if row == 0:
+                axes.set_title(stage)
+            if row == len(rows) - 1:
+                axes.set_xlabel(f"Time in stage [{unit}]")
+        grid[row, 0].set_ylabel(f"{group} [{shown}]" if shown else group)
+        if len(names) > 1:
+            grid[row, -1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.align_ylabels()
+    path = arguments.output or figure_path(result.path, "histories")
+    return save(figure, path, arguments.dpi)
+
+
+def parser():
+    """Command line."""
+    return parser_of(__doc__)
+
+
+if __name__ == "__main__":
+    run_main(parser(), draw)

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""One field at several times, small maps with one colour scale."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from talus_map import FieldMap, FieldScale, add_map_options, default_field, shape_note, view_of
+from talus_style import figure_path, parser_of, run_main, save, seconds, time_text
+
+
+def chosen(result, arguments):
+    """Snapshots to show: those asked for, else `count` spread over the run."""
+    if arguments.snapshots:
+        return [result.snapshot(name) for name in arguments.snapshots]
+    if arguments.times:
+        return [result.snapshot(time=time) for time in arguments.times]
+    numbered = result.numbered()
+    pick = np.unique(np.linspace(0, len(numbered) - 1, arguments.count).round().astype(int))
+    return [numbered[i] for i in pick]
+
+
+def draw(result, arguments):
+    """Draw and save; returns the file's name."""
+    snapshots = chosen(result, arguments)
+    field = arguments.field or default_field(result)
+    scale = FieldScale(result, field, snapshots, arguments.limits)
+    (x0, x1), (y0, y1) = view_of(result, snapshots, arguments.deformed)
+    columns = min(arguments.columns, len(snapshots))
+    rows = -(-len(snapshots) // columns)
+    width = 7.4
+    height = (width - 1.5) / columns * (y1 - y0) / (x1 - x0)
+    figure, grid = plt.subplots(
+        rows,
+        columns,
+        figsize=(width, min(10.0, rows * (height + 0.32) + 0.45)),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    )
+    for axes, snapshot in zip(grid.flat, snapshots):
+        cells = FieldMap(axes, result, scale, arguments.deformed).show(snapshot)
+        axes.set(xlim=(x0, x1), ylim=(y0, y1))
+        axes.set_title(time_text(result, snapshot), fontsize=8)
+    for axes in grid.flat[len(snapshots) :]:
+        axes.set_axis_off()
+    for column in range(columns):
+        shown = (len(snapshots) - 1 - column) // columns
+        grid[shown, column].set_xlabel("x [m]")
+        grid[shown, column].tick_params(labelbottom=True)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("y [m]")
+    scale.add_bar(figure, cells, ax=grid, shrink=min(1.0, 0.3 + 1.1 / rows), aspect=25, pad=0.02)
+    note = shape_note(arguments.deformed)
+    if note:
+        figure.suptitle(note, fontsize=8)
+    path = arguments.output or figure_path(result.path, f"{field}_sequence")
+    return save(figure, path, arguments.dpi)
+
+
+def parser():
+    """Command line."""
+    options = parser_of(__doc__)
+    add_map_options(options)
+    when = options.add_mutually_exclusive_group()
+    when.add_argument("--snapshots", nargs="+", help="numbers or names; -1 is the last")
+    when.add_argument("--times", nargs="+", type=seconds, help="nearest snapshots: 0 90min 1.5h")
+    when.add_argument("--count", type=int, default=6, help="maps spread over the run (6)")
+    options.add_argument("--columns", type=int, default=2, help="maps beside each other (2)")
+    return options
+
+
+if __name__ == "__main__":
+    run_main(parser(), draw)

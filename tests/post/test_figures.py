@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Every figure of post/ is drawn from a tiny result file, and its numbers are the file's."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+from PIL import Image
+
+POST = Path(__file__).resolve().parents[2] / "post"
+sys.path.insert(0, str(POST))
+
+import plot_all  # noqa: E402  (found through the path above)
+from talus_result import CellShapes, Result, ResultError, along_vertical  # noqa: E402
+from talus_style import display_units, seconds, time_text  # noqa: E402
+
+
+def write_result(path):
+    """A slanted block of 5 x 4 nodes, quadrilaterals with one column cut into triangles."""
+    nx, ny = 5, 4
+    j, i = np.divmod(np.arange(nx * ny), nx)
+    nodes = np.stack([i * 1.0, j * (0.5 + 0.1 * i)], axis=1)
+    offset, corners = [0], []
+    for row in range(ny - 1):
+        for column in range(nx - 1):
+            a = row * nx + column
+            quad = [a, a + 1, a + nx + 1, a + nx]
+            for cell in ([quad[:3], [a, *quad[2:]]] if column == 1 else [quad]):
+                corners += cell
+                offset.append(len(corners))
+    with h5py.File(path, "w") as file:
+        file.attrs["schema_version"] = 1
+        file.attrs["title"] = np.bytes_(b"tiny")
+        file["mesh/nodes"] = nodes
+        file["mesh/soil"] = np.ones(len(nodes), np.int32)
+        file["mesh/soil_names"] = np.array([b"silt"])
+        file["mesh/cell_area"] = np.full(len(nodes), 0.5)
+        file["mesh/element_offset"] = np.array(offset, np.int32)
+        file["mesh/element_nodes"] = np.array(corners, np.int32)
+        for k, (time, stage) in enumerate([(0, "gravity"), (7200, "storm"), (7201.5, "slide")]):
+            group = file.create_group(f"snapshots/{k:06d}")
+            group.attrs.update(time=float(time), stage=np.bytes_(stage.encode()), step=10 * k)
+            push = np.stack([-0.1 * k * nodes[:, 1], 0 * nodes[:, 1]], axis=1)
+            fields = {
+                "displacement": (push, b"m"),
+                "velocity": (push, b"m/s"),
+                "stress": (-1e4 * np.ones((len(nodes), 4)), b"Pa"),
+                "plastic_strain": (0.1 * k * nodes[:, 0], b"1"),
+                "damage": (0.05 * k * nodes[:, 0], b"1"),
+                "pore_pressure": (-9810.0 * (nodes[:, 1] - 0.7), b"Pa"),
+                "saturation": (1.0 - 0.2 * nodes[:, 1], b"1"),
+            }
+            for name, (data, units) in fields.items():
+                group[name] = data
+                group[name].attrs["units"] = np.bytes_(units)
+        time = np.r_[0:1:5j, 10:7200:5j, 7200.5:7201.5:5j]
+        columns = {
+            "time": (time, b"s"),
+            "maximum_displacement": (1e-4 * time, b"m"),
+            "kinetic_energy": (time, b"J/m"),
+            "energy_error": (0 * time, b"1"),
+            "water_in": (time / 7200, b"m3/m"),
+            "water_stored": (1 + time / 7200, b"m3/m"),
+            "water_error": (1e-16 + 0 * time, b"1"),
+        }
+        for name, (data, units) in columns.items():
+            file["history/" + name] = data
+            file["history/" + name].attrs["units"] = np.bytes_(units)
+        file["history/stage"] = np.repeat([b"gravity", b"storm", b"slide"], 5)
+        file["history/step"] = np.arange(15)
+
+
+class Figures(unittest.TestCase):
+    """Files that the scripts write."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.path = cls.folder / "tiny.h5"
+        write_result(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def assert_drawn(self, path):
+        """The image has a size, and is not of one colour."""
+        with Image.open(path) as image:
+            self.assertGreater(min(image.size), 100, path)
+            colours = image.convert("RGB").getcolors(maxcolors=2**24)
+        self.assertGreater(len(colours), 20, f"{path} looks empty")
+
+    def test_all_figures(self):
+        written = plot_all.draw_all(self.folder, dpi=60)
+        names = {path.name for path in written}
+        wanted = {"tiny_damage.png", "tiny_damage_sequence.png", "tiny_profiles.png"}
+        wanted |= {"tiny_histories.png", "tiny_water_balance.png", "tiny_damage.gif"}
+        self.assertLessEqual(wanted, names)
+        for path in written:
+            self.assertEqual(path.parent, self.folder / "figures")
+            self.assert_drawn(path)
+        with Image.open(self.folder / "figures" / "tiny_damage.gif") as movie:
+            self.assertEqual(movie.n_frames, 3)
+
+    def script(self, name, *options):
+        """Run one script as a user does."""
+        return subprocess.run(
+            [sys.executable, POST / name, self.path, *options],
+            capture_output=True, text=True, cwd=self.folder, check=False,
+        )
+
+    def test_options(self):
+        for name, *options in (
+            ("plot_field.py", "--field", "stress_xy", "--reference", "--snapshot", "0"),
+            ("plot_field.py", "--field", "displacement_x", "--time", "2h", "--limits", "-1", "1"),
+            ("plot_sequence.py", "--field", "saturation", "--times", "0", "120min", "--columns", "1"),
+            ("plot_profiles.py", "--x", "0", "1.3", "4", "--deformed"),
+            ("animate.py", "--field", "velocity", "--deformed", "2", "--rate", "4"),
+        ):
+            suffix = ".gif" if name == "animate.py" else ".png"
+            output = self.folder / f"{name}{len(options)}{suffix}"
+            done = self.script(name, "--output", str(output), "--dpi", "60", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stdout.strip(), str(output))
+            self.assert_drawn(output)
+
+    def test_mistakes_are_explained(self):
+        wrong_field = self.script("plot_field.py", "--field", "damge")
+        self.assertEqual(wrong_field.returncode, 1)
+        self.assertIn("no field 'damge'", wrong_field.stderr)
+        self.assertIn("plastic_strain", wrong_field.stderr)
+        self.assertNotIn("Traceback", wrong_field.stderr)
+        wrong_snapshot = self.script("plot_field.py", "--snapshot", "9")
+        self.assertIn("000000 to 000002", wrong_snapshot.stderr)
+        with self.assertRaisesRegex(ResultError, "nothing.h5"):
+            Result(self.folder / "nothing.h5")
+
+
+class Reading(unittest.TestCase):
+    """Numbers behind the figures."""
+
+    def setUp(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_result(Path(folder) / "tiny.h5")
+            self.result = Result(Path(folder) / "tiny.h5")
+
+    def tearDown(self):
+        self.result.__exit__()
+
+    def test_cells_tile_the_body(self):
+        x, y = np.moveaxis(CellShapes(self.result).at(self.result.nodes), 2, 0)
+        areas = 0.5 * np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1), axis=1)
+        # A block 4 wide, 1.5 high at the left and 2.7 at the right; round-off only.
+        self.assertAlmostEqual(areas.sum(), 4 * (1.5 + 2.7) / 2, delta=1e-13)
+        self.assertGreater(areas.min(), 0.0)
+
+    def test_vertical_line_is_exact_for_linear_fields(self):
+        nodes = self.result.nodes
+        y, value = along_vertical(self.result, nodes, 3.0 * nodes[:, 0] - 2.0 * nodes[:, 1], 1.3)
+        np.testing.assert_allclose(value, 3.0 * 1.3 - 2.0 * y, atol=1e-13)
+        np.testing.assert_allclose([y[0], y[-1]], [0.0, 3 * (0.5 + 0.13)], atol=1e-13)
+
+    def test_components_and_sizes(self):
+        last = self.result.snapshot()
+        push = self.result.field("displacement", last)
+        np.testing.assert_allclose(push, 0.2 * self.result.nodes[:, 1])
+        np.testing.assert_allclose(self.result.field("displacement_x", last), -push)
+        self.assertEqual(self.result.units("stress_zz", last), "Pa")
+        with self.assertRaisesRegex(ResultError, "stress_xx"):
+            self.result.field("stress", last)
+
+    def test_times_as_text(self):
+        texts = [time_text(self.result, s) for s in self.result.snapshots]
+        self.assertEqual(texts[2], "slide, 120.01 min + 1.00 s")
+        self.assertEqual(seconds("1.5h"), 5400.0)
+        self.assertEqual(seconds("90min"), 5400.0)
+        self.assertEqual(seconds("12s"), seconds("12"))
+
+    def test_units_for_readers(self):
+        self.assertEqual(display_units("Pa", 25e3), (1e-3, "kPa"))
+        self.assertEqual(display_units("Pa", 25.0), (1.0, "Pa"))
+        self.assertEqual(display_units("m/s", 1e-6)[1], "mm/h")
+        self.assertEqual(display_units("1", 0.5), (1.0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -140,8 +140,9 @@ contains
         call complain(store, section, 'directory', 'blank', messages)
       end if
       if (size(x) /= size(y)) then
-        call complain(store, section, 'probe_y', text_of(size(y))//' values for '// &
-                      text_of(size(x))//' of probe_x', messages, 'one value for each probe_x')
+        if (is_wrong('probe_x') .or. is_wrong('probe_y')) return
+        call complain(store, section, 'probe_y', 'number of values '//text_of(size(y))// &
+                      ', of probe_x '//text_of(size(x)), messages, 'one value for each probe_x')
         return
       end if
       do i = 1, size(x)
@@ -150,5 +151,13 @@ contains
                       text_of(y(i))//') lies outside the body', messages, 'points of the body')
       end do
     end associate
+
+  contains
+
+    logical function is_wrong(name)
+      character(*), intent(in) :: name
+
+      is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
+    end function is_wrong
   end subroutine check_output
 end module talus_deck_check_model

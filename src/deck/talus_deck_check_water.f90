@@ -46,7 +46,7 @@ contains
               'with n < 2 the conductivity falls infinitely '// &
                     'fast at saturation; 0.01 to 0.02 m is usual', messages)
         end if
-        if (deck_exceeds(max(water%conductivity_x, water%conductivity_y), 0.1_dp)) then
+        if (deck_exceeds(water%conductivity_x, 0.1_dp)) then
           call warn(store, at(i), 'conductivity_x', 'very large; the unit is m/s', messages)
         end if
         if (water%retention == 'table') call check_file(store, at(i), 'file', water%file, messages)

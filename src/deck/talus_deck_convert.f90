@@ -11,6 +11,9 @@ module talus_deck_convert
   private
   public :: convert_words, convert_default, real_of_word
 
+  !> Largest power of ten read: larger ones would overflow, which traps in a debug build.
+  integer, parameter :: power_max = 300
+
 contains
 
   !> Convert all words of one key. `problem` is '' when they are right.
@@ -86,7 +89,7 @@ contains
     real(dp), intent(out) :: value
     logical, intent(out) :: is_right
     character(:), allocatable :: mantissa, exponent
-    integer :: split, iostat
+    integer :: split, power, iostat
 
     value = 0.0_dp
     is_right = .false.
@@ -101,9 +104,10 @@ contains
     if (verify(mantissa, '0123456789.') > 0 .or. scan(mantissa, '0123456789') == 0) return
     if (index(mantissa, '.') /= index(mantissa, '.', back=.true.)) return
     if (len(exponent) == 0 .or. len(exponent) > 3 .or. verify(exponent, '0123456789') > 0) return
+    read (exponent, *, iostat=iostat) power
+    if (iostat /= 0 .or. power + len(mantissa) > power_max) return
     read (word%text, *, iostat=iostat) value
     is_right = iostat == 0
-    if (is_right) is_right = abs(value) <= huge(value)
   end subroutine real_of_word
 
   !> Text without a leading sign.

@@ -159,9 +159,9 @@ contains
       'lines, text in quotes, comments after `!`, lists with commas. Names are '// &
       'case-insensitive. SI units (m, s, kg, Pa), except where the table says otherwise: '// &
       'angles in degrees, rain in mm/h. x points right, y up; the toe of a slope is on the '// &
-      'left. Paths are relative to the deck''s folder. `./talus check DECK` reports every mistake at once '// &
-      'and prints the deck with all defaults; `./talus keys GROUP` prints the tables below in '// &
-      'the terminal.', 0)//newline// &
+      'left. Paths are relative to the deck''s folder. `./talus check DECK` reports every '// &
+      'mistake at once and prints the deck with all defaults; `./talus keys GROUP` prints the '// &
+      'tables below in the terminal.', 0)//newline// &
       wrapped('Suction is counted once. With `stress = ''net''` it may add cohesion '// &
       '(`suction_strength`) and strain (`suction_strain`). With `stress = ''bishop''` the '// &
       'effective stress already holds both effects, so both keys must stay `none`.', 0)

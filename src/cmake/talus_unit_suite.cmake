@@ -40,16 +40,19 @@ function(talus_unit_program name source)
 endfunction()
 
 # A suite passes when it says so: a `stop` in tested code would end it early with exit code 0.
+# Each runs in a folder of its own, so that files written by suites side by side do not meet.
 function(talus_unit_suite name)
   talus_unit_program(${name} unit/${name}.pf)
   if(NOT PFUNIT_FOUND)
     add_test(NAME ${name} COMMAND ${name})
   endif()
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/run/${name}")
+  file(MAKE_DIRECTORY "${folder}")
   set_tests_properties(${name} PROPERTIES
     LABELS unit
     TIMEOUT 300
-    WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
-    ENVIRONMENT "OPENBLAS_NUM_THREADS=1"
+    WORKING_DIRECTORY "${folder}"
+    ENVIRONMENT "OPENBLAS_NUM_THREADS=1;TALUS_SOURCE_DIR=${PROJECT_SOURCE_DIR}"
     PASS_REGULAR_EXPRESSION "\\([1-9][0-9]* tests?(, [0-9]+ disabled)?\\)"
     FAIL_REGULAR_EXPRESSION "FAILURES;Sanitizer;runtime error:;Encountered 1 or more")
 endfunction()

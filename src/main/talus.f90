@@ -1,20 +1,70 @@
 ! SPDX-License-Identifier: MIT
-!> The program `talus`: prints its version and the words it takes.
+!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 files, 2 bad input, 3 numerics.
 program talus
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use talus_command, only: command_t, command_read, command_help
+  use talus_status, only: status_t, status_failed, status_io, status_deck, status_numeric
+  use talus_deck_types, only: deck_t
+  use talus_deck_messages, only: messages_t, messages_text
+  use talus_deck, only: deck_load
+  use talus_deck_manual, only: manual_keys, manual_markdown
+  use talus_check, only: check_deck
+  use talus_run, only: run_deck
+  use talus_place, only: place_results
   use talus_version, only: version, git_hash
+  use omp_lib, only: omp_set_num_threads
   implicit none
-  character(64) :: word
+  type(command_t) :: command
+  type(status_t) :: status
+  type(deck_t) :: deck
+  character(:), allocatable :: text, base
 
-  word = 'help'
-  if (command_argument_count() > 0) call get_command_argument(1, word)
-  select case (word)
-  case ('version', '--version')
-    write (*, '(5a)') 'talus ', version, ' (', git_hash, ')'
-  case ('help', '--help', '-h')
-    write (*, '(a)') 'usage: talus version | help'
-  case default
-    write (error_unit, '(3a)') 'talus: unknown word "', trim(word), '"; try: talus help'
+  call command_read(command, status)
+  if (.not. status_failed(status)) then
+    select case (command%word)
+    case ('run')
+      call load
+      if (.not. status_failed(status)) &
+        call place_results(deck, command%output, command%overwrite, base, status)
+      if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, status)
+      if (.not. status_failed(status)) write (*, '(3a)') 'results: ', base, '.h5, _history.csv, _summary.txt'
+    case ('check')
+      call load
+      if (.not. status_failed(status)) call check_deck(deck, command%spectrum, status)
+    case ('keys')
+      call manual_keys(command%argument, text, status)
+      if (.not. status_failed(status)) write (*, '(a)', advance='no') text
+    case ('manual')
+      call manual_markdown(text)
+      write (*, '(a)', advance='no') text
+    case ('version')
+      write (*, '(5a)') 'talus ', version, ' (', git_hash, ')'
+    case default
+      call command_help
+    end select
+  end if
+  if (status_failed(status)) write (error_unit, '(2a)') 'talus: ', status%message
+  select case (status%code)
+  case (status_io)
     error stop 1
+  case (status_deck)
+    error stop 2
+  case (status_numeric)
+    error stop 3
   end select
+
+contains
+
+  !> Read the deck, print every message, and set the threads.
+  subroutine load
+    type(messages_t) :: messages
+    integer :: threads
+
+    call deck_load(command%argument, deck, messages, status)
+    write (error_unit, '(a)', advance='no') messages_text(messages)
+    if (status_failed(status)) return
+    threads = deck%run%threads
+    if (command%threads > 0) threads = command%threads
+    if (threads > 0) call omp_set_num_threads(threads)
+  end subroutine load
 end program talus

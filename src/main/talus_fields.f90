@@ -1,0 +1,94 @@
+! SPDX-License-Identifier: MIT
+!> Nodal fields as they are reported, derived from the state.
+module talus_fields
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_damage, only: damage_part
+  use talus_soil_law, only: history_damage, stress_bishop, bishop_subtract
+  use talus_strain, only: strain_first, strain_one_level
+  use talus_smooth, only: smooth_gradient
+  implicit none
+  private
+  public :: field_total_stress, field_strain, field_porosity
+
+contains
+
+  !> Total Cauchy stress [Pa], damaged and with pore pressure, (4,n).
+  function field_total_stress(disc, ground, state) result(stress)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    real(dp) :: stress(4, disc%n)
+    real(dp) :: part(4), effective
+    integer :: i
+
+    stress = state%stress
+    do i = 1, disc%n
+      associate (law => ground%law(disc%soil(i)))
+        if (law%damage%driver /= 0) then
+          call damage_part(law%damage%split, state%stress(:, i), part)
+          stress(:, i) = stress(:, i) - state%history(history_damage, i)*part
+        end if
+        if (law%stress /= stress_bishop) cycle
+        associate (curve => ground%curve(disc%soil(i)))
+          effective = (state%saturation(i) - curve%residual)/(curve%maximum - curve%residual)
+        end associate
+        call bishop_subtract(-state%pressure(i), effective, stress(:, i))
+      end associate
+    end do
+  end function field_total_stress
+
+  !> Green-Lagrange strain of the motion since displacements were last set to zero: xx, yy, zz, xy.
+  function field_strain(disc, state) result(strain)
+    type(disc_t), intent(in) :: disc
+    type(state_t), intent(in) :: state
+    real(dp) :: strain(4, disc%n)
+    real(dp), allocatable :: now(:,:), zero(:,:)
+    real(dp) :: f0(4), f(4), det
+    integer :: i
+
+    now = gradient(disc, state%u)
+    zero = gradient(disc, state%u_zero)
+    do i = 1, disc%n
+      f0 = zero(:, i) + [1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp]
+      f = now(:, i) + [1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp]
+      det = f0(1)*f0(4) - f0(2)*f0(3)
+      f = [f(1)*f0(4) - f(2)*f0(3), f(2)*f0(1) - f(1)*f0(2), &
+           f(3)*f0(4) - f(4)*f0(3), f(4)*f0(1) - f(3)*f0(2)]/det
+      strain(:, i) = 0.5_dp*[f(1)**2 + f(3)**2 - 1.0_dp, f(2)**2 + f(4)**2 - 1.0_dp, 0.0_dp, &
+                             f(1)*f(2) + f(3)*f(4)]
+    end do
+  end function field_strain
+
+  !> Displacement gradient that the stress sees, (4,n).
+  function gradient(disc, u) result(h)
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: u(:,:)
+    real(dp), allocatable :: h(:,:)
+    real(dp), allocatable :: y(:,:)
+
+    allocate (y(4, disc%n), h(4, disc%n))
+    call strain_first(disc%scni, u, y)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_gradient(disc%two_level, y, h)
+    else
+      call strain_one_level(disc%dual%area, y, h)
+    end if
+  end function gradient
+
+  !> Porosity n = 1 - (1 - n0)/J, (n).
+  function field_porosity(disc, ground, state) result(porosity)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    real(dp) :: porosity(disc%n)
+    integer :: i
+
+    do i = 1, disc%n
+      porosity(i) = 1.0_dp - (1.0_dp - ground%porosity(disc%soil(i))) &
+        /(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i))
+    end do
+  end function field_porosity
+end module talus_fields

@@ -1,0 +1,51 @@
+! SPDX-License-Identifier: MIT
+!> Where the results of a run go.
+module talus_place
+  use talus_status, only: status_t, status_set, status_deck, status_io
+  use talus_deck_types, only: deck_t
+  use talus_file, only: file_exists
+  implicit none
+  private
+  public :: place_results
+
+contains
+
+  !> Path of the result files without ending. Makes the folder; refuses results that exist unless
+  !> they may be replaced.
+  subroutine place_results(deck, folder, overwrite, base, status)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: folder !! asked for on the command line, '' for the deck's
+    logical, intent(in) :: overwrite
+    character(:), allocatable, intent(out) :: base
+    type(status_t), intent(inout) :: status
+    character(:), allocatable :: place
+    integer :: failed
+
+    place = deck%output%directory
+    if (len(folder) > 0) place = folder
+    call execute_command_line("mkdir -p -- '"//quoted(place)//"'", exitstat=failed)
+    if (failed /= 0) then
+      call status_set(status, status_io, 'cannot make the folder '//place)
+      return
+    end if
+    base = place//'/'//deck%run%name
+    if (file_exists(base//'.h5') .and. .not. overwrite) call status_set(status, status_deck, &
+      base//'.h5 exists; nothing was written (allow with --overwrite, or choose --output DIR)')
+  end subroutine place_results
+
+  !> Text safe between single quotes of the shell.
+  pure function quoted(text) result(safe)
+    character(*), intent(in) :: text
+    character(:), allocatable :: safe
+    integer :: i
+
+    safe = ''
+    do i = 1, len(text)
+      if (text(i:i) == "'") then
+        safe = safe//"'\''"
+      else
+        safe = safe//text(i:i)
+      end if
+    end do
+  end function quoted
+end module talus_place

@@ -1,0 +1,133 @@
+! SPDX-License-Identifier: MIT
+!> The summary of a run, one `key = value` a line, in SI units.
+module talus_report
+  use, intrinsic :: iso_fortran_env, only: compiler_version
+  use omp_lib, only: omp_get_max_threads
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_failed
+  use talus_text, only: text_of
+  use talus_session, only: session_t
+  use talus_soil_law, only: plasticity_none
+  use talus_strength, only: strength_cone
+  use talus_drucker_prager, only: cone_t
+  use talus_summary, only: summary_create, summary_set, summary_write
+  use talus_timer, only: timer_seconds, timer_names
+  use talus_version, only: version, git_hash
+  implicit none
+  private
+  public :: report_summary, peak_memory_bytes
+
+contains
+
+  !> Write the summary. `outcome` is that of the run.
+  subroutine report_summary(session, outcome, status)
+    type(session_t), intent(inout) :: session
+    type(status_t), intent(in) :: outcome
+    type(status_t), intent(inout) :: status
+
+    associate (summary => session%summary)
+      call summary_create(summary, session%base//'_summary.txt')
+      call summary_set(summary, 'title', session%deck%run%title)
+      call summary_set(summary, 'version', version)
+      call summary_set(summary, 'git_hash', git_hash)
+      call summary_set(summary, 'compiler', compiler_version())
+      call summary_set(summary, 'exit_code', outcome%code)
+      if (status_failed(outcome)) call summary_set(summary, 'failure', outcome%message)
+      call report_model(session)
+      call report_cost(session)
+      call report_answers(session)
+      call summary_write(summary, status)
+    end associate
+  end subroutine report_summary
+
+  !> Size, smoothing and laws.
+  subroutine report_model(session)
+    type(session_t), intent(inout) :: session
+    type(cone_t) :: cone
+    integer :: i
+
+    associate (summary => session%summary, deck => session%deck, disc => session%disc)
+      call summary_set(summary, 'nodes', disc%n)
+      call summary_set(summary, 'mean_neighbours', real(size(disc%scni%node), dp)/real(disc%n, dp))
+      call summary_set(summary, 'smoothing_levels', deck%smoothing%levels)
+      if (disc%two_levels) then
+        call summary_set(summary, 'smoothing_length', deck%smoothing%length)
+        call summary_set(summary, 'smoothing_weights', deck%smoothing%weights)
+        call summary_set(summary, 'smoothing_acts_on', deck%smoothing%acts_on)
+        call summary_set(summary, 'mean_second_neighbours', &
+                         real(size(disc%two_level%cell), dp)/real(disc%n, dp))
+      end if
+      call summary_set(summary, 'stabilisation', deck%smoothing%stabilisation)
+      do i = 1, size(deck%soil)
+        if (session%ground%law(i)%plasticity == plasticity_none) cycle
+        call strength_cone(session%ground%law(i)%strength, 0.0_dp, 0.0_dp, 1.0_dp, cone)
+        call summary_set(summary, 'cone_fit_'//trim(session%ground%name(i)), deck%soil(i)%fit)
+        call summary_set(summary, 'cone_alpha_'//trim(session%ground%name(i)), cone%alpha)
+        call summary_set(summary, 'cone_k_'//trim(session%ground%name(i)), cone%k)
+      end do
+      call summary_set(summary, 'scaling_and_damping', session%declared)
+    end associate
+  end subroutine report_model
+
+  !> Steps, seconds and bytes.
+  subroutine report_cost(session)
+    type(session_t), intent(inout) :: session
+    character(:), allocatable :: names(:)
+    real(dp) :: wall, soil
+    integer :: i
+
+    associate (summary => session%summary, state => session%state)
+      call summary_set(summary, 'threads', omp_get_max_threads())
+      call summary_set(summary, 'steps', state%steps)
+      call summary_set(summary, 'seepage_steps', state%seepage_steps)
+      wall = timer_seconds(session%timer, 'set_up') + timer_seconds(session%timer, 'stages')
+      call summary_set(summary, 'wall_seconds', wall)
+      names = timer_names(session%timer)
+      do i = 1, size(names)
+        call summary_set(summary, 'wall_seconds_'//trim(names(i)), &
+                         timer_seconds(session%timer, trim(names(i))))
+      end do
+      soil = timer_seconds(session%timer, 'soil') + timer_seconds(session%timer, 'geostatic')
+      if (soil > 0.0_dp) call summary_set(summary, 'node_steps_per_second', &
+        real(session%disc%n, dp)*real(state%steps, dp)/soil)
+      call summary_set(summary, 'peak_memory_bytes', peak_memory_bytes())
+    end associate
+  end subroutine report_cost
+
+  !> What the run found.
+  subroutine report_answers(session)
+    type(session_t), intent(inout) :: session
+
+    associate (summary => session%summary)
+      call summary_set(summary, 'simulated_seconds', session%state%time)
+      call summary_set(summary, 'maximum_displacement', session%greatest_displacement)
+      call summary_set(summary, 'water_error', session%worst_water_error)
+      call summary_set(summary, 'energy_error', session%worst_energy_error)
+      call summary_set(summary, 'failed', session%failed)
+      if (session%failed) then
+        call summary_set(summary, 'trigger_time', session%trigger_time)
+      else
+        call summary_set(summary, 'trigger_time', 'none')
+      end if
+    end associate
+  end subroutine report_answers
+
+  !> Most memory the program has held [bytes], from the kernel; 0 where it does not say.
+  integer(i8) function peak_memory_bytes() result(bytes)
+    character(200) :: line
+    integer :: unit, failed, kilobytes
+
+    bytes = 0_i8
+    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=failed)
+    if (failed /= 0) return
+    do
+      read (unit, '(a)', iostat=failed) line
+      if (failed /= 0) exit
+      if (line(:6) /= 'VmHWM:') cycle
+      read (line(7:index(line, 'kB')-1), *, iostat=failed) kilobytes
+      if (failed == 0) bytes = int(kilobytes, i8)*1024_i8
+      exit
+    end do
+    close (unit)
+  end function peak_memory_bytes
+end module talus_report

@@ -1,0 +1,141 @@
+! SPDX-License-Identifier: MIT
+!> A run from deck to results: model, discretisation, state, stages, summary.
+module talus_run
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_set, status_failed
+  use talus_deck_types, only: deck_t, deck_given
+  use talus_session, only: session_t
+  use talus_setup_ground, only: setup_ground
+  use talus_setup_disc, only: setup_disc
+  use talus_state, only: state_allocate
+  use talus_initial, only: initial_hydrostatic, initial_water, initial_k0, weight_masses
+  use talus_soil_step, only: work_allocate
+  use talus_result, only: result_create, result_write_text, result_write_attribute, &
+    result_write_mesh
+  use talus_history, only: history_store, history_close
+  use talus_record, only: record_start
+  use talus_stages, only: stage_run
+  use talus_report, only: report_summary
+  use talus_timer, only: timer_start, timer_stop
+  use talus_version, only: version, git_hash
+  implicit none
+  private
+  public :: run_prepare, run_deck
+
+contains
+
+  !> Everything up to the first step.
+  subroutine run_prepare(deck, session, status)
+    type(deck_t), intent(in) :: deck
+    type(session_t), intent(out) :: session
+    type(status_t), intent(inout) :: status
+    integer :: i
+
+    call timer_start(session%timer, 'set_up')
+    session%deck = deck
+    session%declared = ''
+    session%soil_moves = .false.
+    do i = 1, size(deck%stage)
+      session%soil_moves = session%soil_moves .or. deck%stage(i)%solve /= 'seepage'
+    end do
+    call setup_ground(deck, session%ground, status)
+    if (status_failed(status)) return
+    call setup_disc(deck, session%ground, session%disc, status)
+    if (status_failed(status)) return
+    call state_allocate(session%state, session%disc, session%ground)
+    call work_allocate(session%work, session%disc)
+    call place_probes(session)
+    call start_state(session)
+    call timer_stop(session%timer, 'set_up')
+  end subroutine run_prepare
+
+  !> Run every stage of a deck and write its results to `base`.h5 and files beside it.
+  subroutine run_deck(deck, base, overwrite, status)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: base     !! path of the result files without ending
+    logical, intent(in) :: overwrite     !! results that exist may be replaced
+    type(status_t), intent(inout) :: status
+    type(session_t) :: session
+    type(status_t) :: closing
+    integer :: i
+
+    call run_prepare(deck, session, status)
+    if (status_failed(status)) return
+    session%base = base
+    call timer_start(session%timer, 'stages')
+    call open_results(session, overwrite, status)
+    if (status_failed(status)) return
+    do i = 1, size(deck%stage)
+      call stage_run(session, i, status)
+      if (status_failed(status)) exit
+      if (session%failed .and. deck%stage(i)%kind == 'storm' .and. &
+          deck%stage(i)%after_failure == 'stop') exit
+    end do
+    call timer_stop(session%timer, 'stages')
+    call history_store(session%history, session%result%path, closing)
+    call history_close(session%history, closing)
+    call report_summary(session, status, closing)
+    if (status_failed(closing)) call status_set(status, closing%code, closing%message)
+  end subroutine run_deck
+
+  !> Nodes nearest to the probes.
+  subroutine place_probes(session)
+    type(session_t), intent(inout) :: session
+    integer :: i
+
+    associate (output => session%deck%output, x => session%disc%mesh%x)
+      allocate (session%probe(size(output%probe_x)))
+      do i = 1, size(session%probe)
+        session%probe(i) = minloc((x(1, :) - output%probe_x(i))**2 &
+                                  + (x(2, :) - output%probe_y(i))**2, dim=1)
+      end do
+    end associate
+  end subroutine place_probes
+
+  !> Pore pressure, stress and mass at the start.
+  subroutine start_state(session)
+    type(session_t), intent(inout) :: session
+    real(dp), allocatable :: pressure(:)
+    real(dp) :: limit
+
+    associate (initial => session%deck%initial, disc => session%disc, ground => session%ground)
+      if (ground%wet) then
+        allocate (pressure(disc%n), source=0.0_dp)
+        select case (initial%pore_pressure)
+        case ('uniform')
+          pressure = -initial%suction
+        case ('hydrostatic')
+          limit = huge(1.0_dp)
+          if (deck_given(initial%suction_limit)) limit = initial%suction_limit
+          pressure = initial_hydrostatic(disc, ground%unit_weight, &
+            [initial%water_table, initial%water_table_right], limit)
+        end select
+        call initial_water(disc, ground, pressure, session%state)
+      end if
+      call weight_masses(disc, ground, session%state)
+      if (initial%stress == 'k0') call initial_k0(disc, ground, initial%lateral_stress_ratio, &
+                                                  session%state)
+    end associate
+  end subroutine start_state
+
+  !> Create the result file with all that does not change, and the history.
+  subroutine open_results(session, overwrite, status)
+    type(session_t), intent(inout) :: session
+    logical, intent(in) :: overwrite
+    type(status_t), intent(inout) :: status
+
+    associate (result => session%result, deck => session%deck, disc => session%disc)
+      call result_create(result, session%base//'.h5', overwrite, deck%output%xdmf, status)
+      call result_write_attribute(result, 'version', version, status)
+      call result_write_attribute(result, 'git_hash', git_hash, status)
+      call result_write_attribute(result, 'title', deck%run%title, status)
+      call result_write_attribute(result, 'deck_path', deck%path, status)
+      call result_write_text(result, '/deck/text', deck%text, status)
+      call result_write_text(result, '/deck/resolved', deck%resolved, status)
+      call result_write_mesh(result, disc%mesh%x, disc%soil, session%ground%name, disc%dual%area, &
+                             disc%mesh%element_offset, disc%mesh%element_nodes, status)
+    end associate
+    if (status_failed(status)) return
+    call record_start(session, status)
+  end subroutine open_results
+end module talus_run

@@ -1,0 +1,92 @@
+! SPDX-License-Identifier: MIT
+!> From the deck's boundaries to the conditions of one stage.
+module talus_setup_conditions
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_failed
+  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_acts_in
+  use talus_disc, only: disc_t
+  use talus_boundary_sets, only: boundary_set_t, boundary_set_build
+  use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
+    inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlet_none, inlet_head, inlet_flux, &
+    inlet_rain, inlet_seepage
+  use talus_rain, only: rain_t, rain_constant, rain_read
+  implicit none
+  private
+  public :: setup_conditions
+
+contains
+
+  !> Conditions of a stage. Boundaries are laid over each other in the order of the deck.
+  subroutine setup_conditions(deck, disc, stage, conditions, status)
+    type(deck_t), intent(in) :: deck
+    type(disc_t), intent(in) :: disc
+    character(*), intent(in) :: stage !! its name
+    type(conditions_t), intent(out) :: conditions
+    type(status_t), intent(inout) :: status
+    type(boundary_set_t) :: sets(size(deck%boundary))
+    type(rain_t) :: rains(size(deck%boundary))
+    type(inlet_paint_t) :: paint
+    integer :: i
+
+    call conditions_allocate(conditions, disc%n)
+    call inlets_start(paint, disc%n)
+    do i = 1, size(deck%boundary)
+      rains(i) = rain_constant(0.0_dp)
+      associate (boundary => deck%boundary(i))
+        if (.not. deck_acts_in(boundary, stage)) cycle
+        call boundary_set_build(sets(i), disc%mesh, disc%dual, boundary%where, &
+          [boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y], status)
+        if (status_failed(status)) return
+        call add_supports(boundary, sets(i), conditions)
+        call conditions_load(conditions, sets(i), [boundary%traction_x, boundary%traction_y], &
+                             boundary%pressure)
+        call add_water(boundary, sets(i), i, rains(i), paint, status)
+      end associate
+    end do
+    call inlets_finish(conditions%inlets, paint, sets, rains)
+  end subroutine setup_conditions
+
+  !> Held and driven directions.
+  pure subroutine add_supports(boundary, set, conditions)
+    type(boundary_t), intent(in) :: boundary
+    type(boundary_set_t), intent(in) :: set
+    type(conditions_t), intent(inout) :: conditions
+
+    if (boundary%displacement == 'fixed' .or. boundary%displacement == 'roller_x') &
+      call conditions_hold(conditions, set, 1, 0.0_dp)
+    if (boundary%displacement == 'fixed' .or. boundary%displacement == 'roller_y') &
+      call conditions_hold(conditions, set, 2, 0.0_dp)
+    if (deck_given(boundary%velocity_x)) &
+      call conditions_hold(conditions, set, 1, boundary%velocity_x)
+    if (deck_given(boundary%velocity_y)) &
+      call conditions_hold(conditions, set, 2, boundary%velocity_y)
+  end subroutine add_supports
+
+  !> Where water enters and leaves.
+  subroutine add_water(boundary, set, number, rain, paint, status)
+    type(boundary_t), intent(in) :: boundary
+    type(boundary_set_t), intent(in) :: set
+    integer, intent(in) :: number
+    type(rain_t), intent(inout) :: rain
+    type(inlet_paint_t), intent(inout) :: paint
+    type(status_t), intent(inout) :: status
+
+    select case (boundary%water)
+    case ('impermeable')
+      call inlets_paint(paint, set, number, inlet_none, 0.0_dp, 0)
+    case ('head')
+      call inlets_paint(paint, set, number, inlet_head, boundary%head, 0)
+    case ('flux')
+      call inlets_paint(paint, set, number, inlet_flux, boundary%flux, 0)
+    case ('seepage_face')
+      call inlets_paint(paint, set, number, inlet_seepage, 0.0_dp, 0)
+    case ('rain')
+      if (len(boundary%hydrograph) > 0) then
+        call rain_read(boundary%hydrograph, rain, status)
+      else
+        rain = rain_constant(boundary%rain)
+      end if
+      call inlets_paint(paint, set, number, inlet_rain, boundary%pressure_max, number)
+    end select
+  end subroutine add_water
+end module talus_setup_conditions

@@ -1,0 +1,129 @@
+! SPDX-License-Identifier: MIT
+!> From the deck's geometry to the discretisation.
+module talus_setup_disc
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_failed, status_deck
+  use talus_text, only: text_of
+  use talus_deck_types, only: deck_t
+  use talus_ground, only: ground_t
+  use talus_nodes, only: mesh_t
+  use talus_mesh_box, only: mesh_box
+  use talus_mesh_slope, only: mesh_slope
+  use talus_mesh_file, only: mesh_file_read
+  use talus_mesh_perturb, only: mesh_perturb
+  use talus_renumber, only: mesh_renumber
+  use talus_dual_cells, only: dual_build, dual_spacing
+  use talus_scni, only: scni_build
+  use talus_two_level, only: two_level_build, weights_symmetric, weights_rk, weights_area
+  use talus_stabilise, only: stabilise_build
+  use talus_disc, only: disc_t
+  implicit none
+  private
+  public :: setup_disc
+
+contains
+
+  !> Nodes, cells and operators.
+  subroutine setup_disc(deck, ground, disc, status)
+    type(deck_t), intent(in) :: deck
+    type(ground_t), intent(in) :: ground
+    type(disc_t), intent(out) :: disc
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: support(:)
+    integer, allocatable :: old_number(:)
+
+    call make_mesh(deck, disc%mesh, status)
+    if (status_failed(status)) return
+    call mesh_perturb(disc%mesh, deck%nodes%perturbation, deck%nodes%seed, .false.)
+    call mesh_renumber(disc%mesh, old_number)
+    disc%n = size(disc%mesh%x, 2)
+    call dual_build(disc%dual, disc%mesh, status)
+    if (status_failed(status)) return
+    call assign_soils(deck, disc, status)
+    support = deck%nodes%support*dual_spacing(disc%dual, disc%mesh)
+    call scni_build(disc%scni, disc%mesh, disc%dual, support, status)
+    if (status_failed(status)) return
+    call build_smoothing(deck, ground, disc, status)
+  end subroutine setup_disc
+
+  !> Second level and stabilisation.
+  subroutine build_smoothing(deck, ground, disc, status)
+    type(deck_t), intent(in) :: deck
+    type(ground_t), intent(in) :: ground
+    type(disc_t), intent(inout) :: disc
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: modulus(:)
+    integer :: weights
+
+    disc%two_levels = deck%smoothing%levels == 2
+    if (disc%two_levels) then
+      disc%damage_only = deck%smoothing%acts_on == 'damage_only'
+      weights = weights_symmetric
+      if (deck%smoothing%weights == 'rk') weights = weights_rk
+      if (deck%smoothing%weights == 'area') weights = weights_area
+      call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, deck%smoothing%length, &
+                           weights, status)
+    end if
+    disc%stabilised = deck%smoothing%stabilisation > 0.0_dp
+    disc%floor = deck%smoothing%stabilisation_floor
+    if (.not. disc%stabilised) return
+    modulus = ground%law(disc%soil)%elastic%youngs_modulus
+    call stabilise_build(disc%stabilise, disc%mesh%x, disc%dual, modulus, &
+                         deck%smoothing%stabilisation)
+  end subroutine build_smoothing
+
+  !> Nodes and the grid they come with.
+  subroutine make_mesh(deck, mesh, status)
+    type(deck_t), intent(in) :: deck
+    type(mesh_t), intent(out) :: mesh
+    type(status_t), intent(inout) :: status
+
+    associate (geometry => deck%geometry, nodes => deck%nodes)
+      select case (geometry%kind)
+      case ('box')
+        call mesh_box(mesh, geometry%width, geometry%height, nodes%spacing, nodes%spacing_y, &
+                      nodes%grading_x, nodes%grading_y, [geometry%origin_x, geometry%origin_y], &
+                      status)
+      case ('slope')
+        call mesh_slope(mesh, geometry%slope_height, geometry%slope_ratio, geometry%base_depth, &
+                        geometry%toe_distance, geometry%crest_width, nodes%spacing, &
+                        nodes%spacing_y, [geometry%origin_x, geometry%origin_y], status)
+      case default
+        call mesh_file_read(mesh, geometry%file, status)
+        if (status_failed(status)) return
+        mesh%x(1, :) = mesh%x(1, :) + geometry%origin_x
+        mesh%x(2, :) = mesh%x(2, :) + geometry%origin_y
+      end select
+    end associate
+  end subroutine make_mesh
+
+  !> Soil of each node: its number in the node file, or the last soil whose region holds it.
+  subroutine assign_soils(deck, disc, status)
+    type(deck_t), intent(in) :: deck
+    type(disc_t), intent(inout) :: disc
+    type(status_t), intent(inout) :: status
+    integer :: i, k
+
+    if (allocated(disc%mesh%soil)) then
+      disc%soil = disc%mesh%soil
+      if (minval(disc%soil) < 1 .or. maxval(disc%soil) > size(deck%soil)) &
+        call status_set(status, status_deck, deck%geometry%file//': soil numbers go from '// &
+          text_of(minval(disc%soil))//' to '//text_of(maxval(disc%soil))//'; allowed: 1 to '// &
+          text_of(size(deck%soil))//', the &soil groups in the order of the deck')
+      return
+    end if
+    allocate (disc%soil(disc%n), source=0)
+    do k = 1, size(deck%soil)
+      associate (soil => deck%soil(k), x => disc%mesh%x)
+        where (x(1, :) >= soil%from_x .and. x(1, :) <= soil%to_x .and. x(2, :) >= soil%from_y &
+               .and. x(2, :) <= soil%to_y) disc%soil = k
+      end associate
+    end do
+    do i = 1, disc%n
+      if (disc%soil(i) > 0) cycle
+      call status_set(status, status_deck, '&soil: no soil at ('//text_of(disc%mesh%x(1, i))// &
+        ', '//text_of(disc%mesh%x(2, i))//') m; the regions must cover the body')
+      return
+    end do
+  end subroutine assign_soils
+end module talus_setup_disc

@@ -1,0 +1,336 @@
+! SPDX-License-Identifier: MIT
+!> The three kinds of stage (src/THEORY.md section 5, two clocks): each is the ordered list of what
+!> happens; the work is in step/.
+module talus_stages
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_set, status_failed, status_numeric
+  use talus_text, only: text_of
+  use talus_deck_types, only: stage_t, deck_given
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t, water_balance_t
+  use talus_session, only: session_t
+  use talus_setup_ground, only: ground_intact
+  use talus_setup_conditions, only: setup_conditions
+  use talus_initial, only: initial_water, weight_masses, weight_load
+  use talus_soil_step, only: soil_step, soil_force
+  use talus_relax, only: relax_t, relax, motion_prepare, largest_motion, relax_balanced, &
+    relax_broken, relax_exhausted
+  use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
+  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
+  use talus_soil_law, only: soil_inverted
+  use talus_record, only: record_line, record_snapshot, record_last_good
+  use talus_progress, only: progress_start, progress_end, progress_say
+  use talus_timer, only: timer_start, timer_stop
+  implicit none
+  private
+  public :: stage_run
+
+  !> Relaxation steps between two history lines of a geostatic stage.
+  integer, parameter :: relax_chunk = 500
+  !> History lines of a dynamic stage when the deck does not say.
+  integer, parameter :: dynamic_lines = 200
+
+contains
+
+  !> Run one stage of the deck.
+  subroutine stage_run(session, number, status)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: number !! of the stage
+    type(status_t), intent(inout) :: status
+
+    session%stage = number
+    associate (stage => session%deck%stage(number))
+      if (stage%only_after_failure .and. .not. session%failed) return
+      call progress_start(session%progress, stage%name)
+      call stage_begin(session, stage, status)
+      if (status_failed(status)) return
+      call timer_start(session%timer, stage%kind)
+      select case (stage%kind)
+      case ('geostatic')
+        call run_geostatic(session, stage, status)
+      case ('storm')
+        call run_storm(session, stage, status)
+      case default
+        call run_dynamic(session, stage, status)
+      end select
+      call timer_stop(session%timer, stage%kind)
+      if (.not. status_failed(status) .and. stage%reset_displacement) call reset(session%state)
+      call progress_end(session%progress)
+    end associate
+  end subroutine stage_run
+
+  !> Conditions, loads, motion and the starting values of the audit.
+  subroutine stage_begin(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+
+    call setup_conditions(session%deck, session%disc, stage%name, session%conditions, status)
+    if (status_failed(status)) return
+    session%stage_start = session%state%time
+    associate (state => session%state, disc => session%disc)
+      if (session%ground%wet) then
+        state%water = water_balance_t()
+        state%water%stored_start = audit_stored_water(disc, state)
+      end if
+      if (stage%solve /= 'seepage') then
+        session%motion%damping = stage%damping
+        session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
+        call take_load(session)
+        state%v = merge(session%conditions%given, 0.0_dp, session%conditions%held)
+        state%acceleration = 0.0_dp
+        call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
+                            stage%step_safety, session%motion, session%work)
+        session%energies_start = audit_energies(disc, session%ground, session%motion, state)
+        session%declared = session%declared//stage%name//': mass scaling '// &
+          trim(merge('on ', 'off', stage%mass_scaling))//', local damping '//text_of(stage%damping)//'; '
+      end if
+      if (stage%solve /= 'soil') call seepage_shape(session%seepage, disc, session%ground, &
+                                                    session%conditions%inlets, state)
+    end associate
+  end subroutine stage_begin
+
+  !> Weight of soil and water now, and tractions.
+  subroutine take_load(session)
+    type(session_t), intent(inout) :: session
+
+    call weight_masses(session%disc, session%ground, session%state)
+    call audit_load(session%disc%n, weight_load(session%ground, session%state%mass, &
+                                                session%conditions%traction), session%state)
+  end subroutine take_load
+
+  !> Gravity to equilibrium with the pore pressure as given, in soil that neither softens nor
+  !> breaks.
+  subroutine run_geostatic(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    type(ground_t) :: intact
+    type(relax_t) :: outcome
+    integer :: done
+
+    intact = ground_intact(session%ground)
+    done = 0
+    do
+      call relax(session%disc, intact, session%conditions, session%motion, stage%tolerance, &
+                 min(relax_chunk, stage%steps_max - done), huge(1.0_dp), session%state, &
+                 session%work, outcome)
+      done = done + outcome%steps
+      if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
+      if (status_failed(status)) return
+      call record_line(session, real(done, dp)/real(stage%steps_max, dp), status)
+      if (outcome%outcome == relax_balanced) exit
+      if (done < stage%steps_max) cycle
+      session%last_good = session%state
+      call record_last_good(session)
+      call status_set(status, status_numeric, 'stage '//stage%name//': no equilibrium within '// &
+        'steps_max = '//text_of(stage%steps_max)//' steps: out-of-balance force '// &
+        text_of(outcome%ratio)//' of the load, allowed '//text_of(stage%tolerance)// &
+        ', largest displacement '//text_of(largest_motion(session%disc%n, session%state%u, &
+        session%state%u_zero))//' m; the slope does not stand, or steps_max is too small')
+      return
+    end do
+    ! The pore pressure was given for the settled soil.
+    if (session%ground%wet) call initial_water(session%disc, session%ground, &
+                                               session%state%pressure, session%state)
+    if (stage%reset_displacement) call reset(session%state)
+    call record_snapshot(session, status)
+  end subroutine run_geostatic
+
+  !> Count displacement, strain and the history of the soil from here.
+  subroutine reset(state)
+    type(state_t), intent(inout) :: state
+
+    state%u_zero = state%u
+    state%v = 0.0_dp
+    if (allocated(state%strain)) state%strain = 0.0_dp
+    if (allocated(state%history)) state%history = 0.0_dp
+    if (allocated(state%f_drive)) state%f_drive = spread([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], 2, &
+                                                         size(state%u, 2))
+  end subroutine reset
+
+  !> Steps of the storm clock: the water moves, then the soil finds its equilibrium. When it finds
+  !> none, the step is taken back and halved, until the time of failure is known.
+  subroutine run_storm(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    type(state_t) :: before
+    real(dp) :: done, step, next_snapshot
+    logical :: stands
+
+    done = 0.0_dp
+    step = stage%storm_step
+    next_snapshot = snapshot_interval(session, stage)
+    call record_line(session, 0.0_dp, status)
+    call record_snapshot(session, status)
+    do while (done < stage%duration*(1.0_dp - 1.0e-12_dp))
+      step = min(step, stage%duration - done)
+      before = session%state
+      session%last_good = before
+      call storm_step(session, stage, step, stands, status)
+      if (status_failed(status)) return
+      if (.not. stands) then
+        if (step > stage%storm_step_minimum) then
+          session%state = before
+          step = max(0.5_dp*step, stage%storm_step_minimum)
+          cycle
+        end if
+        session%failed = .true.
+        session%trigger_time = before%time
+        ! The water of the failing step stays: the slide starts out of balance.
+        session%state = before
+        call move_water(session, stage, step)
+        session%state%time = before%time + step
+        call progress_say(session%progress, 'equilibrium lost after '// &
+          text_of(session%trigger_time/3600.0_dp)//' h')
+      end if
+      done = done + step
+      call record_line(session, done/stage%duration, status)
+      if (session%failed .or. done >= next_snapshot*(1.0_dp - 1.0e-9_dp) .or. &
+          done >= stage%duration*(1.0_dp - 1.0e-9_dp)) then
+        call record_snapshot(session, status)
+        next_snapshot = done + snapshot_interval(session, stage)
+      end if
+      if (session%failed .or. status_failed(status)) return
+    end do
+  end subroutine run_storm
+
+  !> One step of the storm clock. `stands` tells whether the soil is in equilibrium after it.
+  subroutine storm_step(session, stage, step, stands, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: step !! [s]
+    logical, intent(out) :: stands
+    type(status_t), intent(inout) :: status
+    type(relax_t) :: outcome
+    real(dp) :: moved_max
+
+    stands = .true.
+    if (stage%solve /= 'soil') call move_water(session, stage, step)
+    session%state%time = session%state%time + step
+    if (stage%solve == 'seepage') return
+    call take_load(session)
+    call timer_start(session%timer, 'soil')
+    moved_max = huge(1.0_dp)
+    if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
+    call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
+               stage%steps_max, moved_max, session%state, session%work, outcome)
+    call timer_stop(session%timer, 'soil')
+    stands = outcome%outcome == relax_balanced
+    if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
+  end subroutine storm_step
+
+  !> Move the water for a time, with the soil at rest in its present shape.
+  subroutine move_water(session, stage, step)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: step !! [s]
+
+    call timer_start(session%timer, 'seepage')
+    if (stage%solve == 'both') call seepage_shape(session%seepage, session%disc, session%ground, &
+      session%conditions%inlets, session%state)
+    call seepage_advance(session%seepage, session%disc, session%ground, session%conditions%inlets, &
+      session%state%time - session%stage_start, step, session%state)
+    call timer_stop(session%timer, 'seepage')
+  end subroutine move_water
+
+  !> Real time with true masses, until the duration or until the soil rests.
+  subroutine run_dynamic(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval, speed
+    integer :: failed
+
+    done = 0.0_dp
+    since_water = 0.0_dp
+    line_interval = stage%duration/real(dynamic_lines, dp)
+    if (deck_given(session%deck%output%history_interval)) &
+      line_interval = session%deck%output%history_interval
+    next_line = line_interval
+    next_snapshot = snapshot_interval(session, stage)
+    water_interval = water_pace(session, stage)
+    call record_line(session, 0.0_dp, status)
+    call record_snapshot(session, status)
+    session%last_good = session%state
+    do while (done < stage%duration .and. .not. status_failed(status))
+      call timer_start(session%timer, 'soil')
+      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
+      call timer_stop(session%timer, 'soil')
+      if (failed > 0) then
+        call fail(session, failed, status)
+        return
+      end if
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
+      done = done + session%motion%step
+      since_water = since_water + session%motion%step
+      session%state%time = session%state%time + session%motion%step
+      if (stage%solve == 'both' .and. since_water >= water_interval) then
+        session%state%time = session%state%time - since_water
+        call move_water(session, stage, since_water)
+        session%state%time = session%state%time + since_water
+        call take_load(session)
+        since_water = 0.0_dp
+        water_interval = water_pace(session, stage)
+      end if
+      if (done < next_line .and. done < stage%duration) cycle
+      next_line = next_line + line_interval
+      call record_line(session, done/stage%duration, status)
+      session%last_good = session%state
+      speed = sqrt(maxval(sum(session%state%v**2, dim=1)))
+      if (done >= next_snapshot .and. done < stage%duration) then
+        call record_snapshot(session, status)
+        next_snapshot = next_snapshot + snapshot_interval(session, stage)
+      end if
+      if (speed < stage%rest_velocity .and. done > 10.0_dp*line_interval) exit
+    end do
+    call record_snapshot(session, status)
+  end subroutine run_dynamic
+
+  !> Time between two moves of the water in real time [s]: its stable step, or a hundredth of the
+  !> stage, but one soil step at least.
+  real(dp) function water_pace(session, stage) result(interval)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+
+    interval = huge(1.0_dp)
+    if (stage%solve /= 'both') return
+    call face_fluxes(session%seepage, session%disc, session%ground, session%state)
+    interval = seepage_step_limit(session%seepage, session%disc, session%ground, session%state)
+    interval = max(session%motion%step, min(interval, 0.01_dp*stage%duration))
+  end function water_pace
+
+  !> Time between two snapshots of a stage [s].
+  pure real(dp) function snapshot_interval(session, stage) result(interval)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+
+    interval = huge(1.0_dp)
+    if (deck_given(session%deck%output%snapshot_interval)) then
+      interval = session%deck%output%snapshot_interval
+    else if (stage%snapshots > 0) then
+      interval = stage%duration/real(stage%snapshots, dp)
+    end if
+  end function snapshot_interval
+
+  !> Report the node that broke and save the last good state.
+  subroutine fail(session, failed, status)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: failed !! code*n + node
+    type(status_t), intent(inout) :: status
+    integer :: node, code
+    character(:), allocatable :: what
+
+    code = (failed - 1)/session%disc%n
+    node = failed - code*session%disc%n
+    what = 'the stress is not a finite number'
+    if (code == soil_inverted) what = 'the soil is turned inside out (det F <= 0)'
+    call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
+      ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
+      ', node '//text_of(node)//' at ('//text_of(session%disc%mesh%x(1, node))//', '// &
+      text_of(session%disc%mesh%x(2, node))//') m: '//what//'; last good state at '// &
+      text_of(session%last_good%time)//' s saved as snapshot last_good')
+    call record_last_good(session)
+  end subroutine fail
+end module talus_stages

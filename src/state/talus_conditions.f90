@@ -1,0 +1,168 @@
+! SPDX-License-Identifier: MIT
+!> Boundary conditions of one stage: what holds, drives and loads the nodes, and where water comes
+!> and goes.
+module talus_conditions
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_boundary_sets, only: boundary_set_t
+  use talus_rain, only: rain_t
+  implicit none
+  private
+  public :: conditions_t, inlets_t, conditions_allocate, conditions_hold, conditions_load
+  public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch
+
+  integer, parameter, public :: inlet_none = 0, inlet_head = 1, inlet_flux = 2, inlet_rain = 3, &
+    inlet_seepage = 4
+
+  !> Where water crosses the boundary. The halves of inlet i are half(offset(i):offset(i+1)-1).
+  type :: inlets_t
+    integer, allocatable :: node(:)      !! boundary node of each inlet, ascending, (m)
+    integer, allocatable :: kind(:)      !! one of inlet_*, (m)
+    real(dp), allocatable :: value(:)    !! head [m], inward flux [m/s] or greatest pressure [Pa], (m)
+    integer, allocatable :: rain(:)      !! number of its rain, 0 for none, (m)
+    integer, allocatable :: offset(:)    !! (m+1)
+    integer, allocatable :: half(:)      !! boundary halves, see dual_t
+    type(rain_t), allocatable :: rains(:)
+  end type inlets_t
+
+  type :: conditions_t
+    logical, allocatable :: held(:,:)    !! displacement is prescribed, (2,n)
+    real(dp), allocatable :: given(:,:)  !! prescribed velocity [m/s], (2,n)
+    logical :: driven = .false.          !! some prescribed velocity is not zero
+    real(dp), allocatable :: traction(:,:) !! dead load on the boundary [N/m], (2,n)
+    type(inlets_t) :: inlets
+  end type conditions_t
+
+  !> Inlets while boundaries are laid over each other: one entry a node.
+  type :: inlet_paint_t
+    integer, allocatable :: kind(:), rain(:), set(:), place(:)
+    real(dp), allocatable :: value(:)
+  end type inlet_paint_t
+
+contains
+
+  !> No supports and no loads.
+  subroutine conditions_allocate(conditions, n)
+    type(conditions_t), intent(out) :: conditions
+    integer, intent(in) :: n !! nodes
+
+    allocate (conditions%held(2, n), source=.false.)
+    allocate (conditions%given(2, n), conditions%traction(2, n), source=0.0_dp)
+  end subroutine conditions_allocate
+
+  !> Hold or drive one direction of the nodes of a set.
+  pure subroutine conditions_hold(conditions, set, direction, velocity)
+    type(conditions_t), intent(inout) :: conditions
+    type(boundary_set_t), intent(in) :: set
+    integer, intent(in) :: direction !! 1 for x, 2 for y
+    real(dp), intent(in) :: velocity !! [m/s], 0 to hold
+
+    conditions%held(direction, set%node) = .true.
+    conditions%given(direction, set%node) = velocity
+    if (abs(velocity) > 0.0_dp) conditions%driven = .true.
+  end subroutine conditions_hold
+
+  !> Add tractions to the nodes of a set.
+  pure subroutine conditions_load(conditions, set, traction, pressure)
+    type(conditions_t), intent(inout) :: conditions
+    type(boundary_set_t), intent(in) :: set
+    real(dp), intent(in) :: traction(2) !! force per boundary length [Pa]
+    real(dp), intent(in) :: pressure    !! normal, inward positive [Pa]
+    integer :: i
+
+    do i = 1, size(set%node)
+      conditions%traction(:, set%node(i)) = conditions%traction(:, set%node(i)) &
+        + traction*set%length(i) - pressure*set%normal(:, i)
+    end do
+  end subroutine conditions_load
+
+  !> Start with an impermeable boundary.
+  pure subroutine inlets_start(paint, n)
+    type(inlet_paint_t), intent(out) :: paint
+    integer, intent(in) :: n !! nodes
+
+    allocate (paint%kind(n), paint%rain(n), paint%set(n), paint%place(n))
+    allocate (paint%value(n))
+    paint%kind = inlet_none
+    paint%rain = 0
+    paint%set = 0
+    paint%place = 0
+    paint%value = 0.0_dp
+  end subroutine inlets_start
+
+  !> Lay a water condition over the nodes of a set; it replaces what was there.
+  pure subroutine inlets_paint(paint, set, number, kind, value, rain)
+    type(inlet_paint_t), intent(inout) :: paint
+    type(boundary_set_t), intent(in) :: set
+    integer, intent(in) :: number  !! of the set, for inlets_finish
+    integer, intent(in) :: kind    !! one of inlet_*
+    real(dp), intent(in) :: value  !! head [m], inward flux [m/s] or greatest pressure [Pa]
+    integer, intent(in) :: rain    !! number of its rain, 0 for none
+    integer :: i
+
+    paint%kind(set%node) = kind
+    paint%value(set%node) = value
+    paint%rain(set%node) = rain
+    paint%set(set%node) = number
+    paint%place(set%node) = [(i, i=1, size(set%node))]
+  end subroutine inlets_paint
+
+  !> Inlets of all painted nodes.
+  pure subroutine inlets_finish(inlets, paint, sets, rains)
+    type(inlets_t), intent(out) :: inlets
+    type(inlet_paint_t), intent(in) :: paint
+    type(boundary_set_t), intent(in) :: sets(:)
+    type(rain_t), intent(in) :: rains(:)
+    integer :: i, j, m, first, last
+
+    inlets%node = pack([(i, i=1, size(paint%kind))], paint%kind /= inlet_none)
+    inlets%kind = paint%kind(inlets%node)
+    inlets%value = paint%value(inlets%node)
+    inlets%rain = paint%rain(inlets%node)
+    inlets%rains = rains
+    m = size(inlets%node)
+    allocate (inlets%offset(m+1))
+    inlets%offset(1) = 1
+    allocate (inlets%half(0))
+    do i = 1, m
+      j = paint%place(inlets%node(i))
+      associate (set => sets(paint%set(inlets%node(i))))
+        first = set%half_offset(j)
+        last = set%half_offset(j+1) - 1
+        inlets%half = [inlets%half, set%half(first:last)]
+      end associate
+      inlets%offset(i+1) = inlets%offset(i) + last - first + 1
+    end do
+  end subroutine inlets_finish
+
+  !> Boundary length of each inlet in the present shape [m]: horizontal and facing up where it
+  !> rains, so that rain stays rain per horizontal metre; full length for a flux.
+  pure subroutine inlets_catch(inlets, disc, u, catch)
+    type(inlets_t), intent(in) :: inlets
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: u(:,:)     !! displacement [m], (2,n)
+    real(dp), intent(out) :: catch(:)  !! (m)
+    real(dp) :: side(2), edge(2)
+    integer :: i, k, own, other
+
+    do i = 1, size(inlets%node)
+      catch(i) = 0.0_dp
+      do k = inlets%offset(i), inlets%offset(i+1) - 1
+        associate (half => inlets%half(k))
+          own = disc%dual%half_node(1, half)
+          other = disc%dual%half_node(2, half)
+          side = disc%mesh%x(:, other) - disc%mesh%x(:, own)
+          edge = side + u(:, other) - u(:, own)
+          if (inlets%kind(i) == inlet_flux) then
+            catch(i) = catch(i) + 0.5_dp*norm2(edge)
+          else
+            ! The edge turns with the soil; its outward side is known in the reference.
+            side = [side(2), -side(1)]
+            catch(i) = catch(i) + max(0.0_dp, -0.5_dp*edge(1) &
+              *sign(1.0_dp, dot_product(side, disc%dual%half_normal(:, half))))
+          end if
+        end associate
+      end do
+    end do
+  end subroutine inlets_catch
+end module talus_conditions

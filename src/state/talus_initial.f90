@@ -1,0 +1,128 @@
+! SPDX-License-Identifier: MIT
+!> Pore pressure, stress and weight at the start (src/THEORY.md section 5, geostatic start).
+module talus_initial
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_nodes, only: mesh_t
+  use talus_soil_law, only: stress_net, bishop_factor
+  use talus_storage, only: storage_content, storage_invert
+  implicit none
+  private
+  public :: initial_hydrostatic, initial_water, initial_k0, weight_masses, weight_load
+
+contains
+
+  !> Hydrostatic pore pressure about a straight water table, with the suction limited [Pa], (n).
+  pure function initial_hydrostatic(disc, unit_weight, table, suction_limit) result(pressure)
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: unit_weight   !! of water [N/m3]
+    real(dp), intent(in) :: table(2)      !! elevation at the left and the right end [m]
+    real(dp), intent(in) :: suction_limit !! [Pa]; huge() for none
+    real(dp) :: pressure(disc%n)
+    real(dp) :: left, right
+
+    left = minval(disc%mesh%x(1, :))
+    right = maxval(disc%mesh%x(1, :))
+    pressure = unit_weight*(table(1) + (table(2) - table(1))*(disc%mesh%x(1, :) - left) &
+                            /(right - left) - disc%mesh%x(2, :))
+    pressure = max(pressure, -suction_limit)
+  end function initial_hydrostatic
+
+  !> Set the pore pressure: stored water, flow properties and the suction that the stress knows.
+  subroutine initial_water(disc, ground, pressure, state)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: pressure(:) !! p_w [Pa], (n)
+    type(state_t), intent(inout) :: state
+    real(dp) :: pore
+    integer :: i
+
+    do i = 1, disc%n
+      associate (soil => disc%soil(i), jacobian => state%jacobian(i))
+        pore = jacobian - 1.0_dp + ground%porosity(soil)
+        state%content(i) = storage_content(ground%curve(soil), ground%storage(soil), pore, &
+                                           jacobian, pressure(i))
+        call storage_invert(ground%curve(soil), ground%storage(soil), pore, jacobian, &
+          state%content(i), state%pressure(i), state%saturation(i), state%ratio(i), &
+          state%potential(i), state%capacity(i))
+        ! The inverse has the round-off of the storage; still water is to stay still.
+        state%pressure(i) = pressure(i)
+        state%suction(i) = -pressure(i)
+        if (ground%law(soil)%stress == stress_net) state%suction(i) = max(-pressure(i), 0.0_dp)
+      end associate
+    end do
+  end subroutine initial_water
+
+  !> Stress from the weight above each node, taken with the node's own unit weight, and a ratio of
+  !> horizontal to vertical stress.
+  subroutine initial_k0(disc, ground, ratio, state)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: ratio !! [-]
+    type(state_t), intent(inout) :: state
+    real(dp) :: vertical, effective
+    integer :: i
+
+    do i = 1, disc%n
+      vertical = -ground%gravity*state%mass(i)/disc%dual%area(i) &
+        *(ground_level(disc%mesh, disc%mesh%x(1, i)) - disc%mesh%x(2, i))
+      if (ground%wet) then
+        associate (curve => ground%curve(disc%soil(i)))
+          effective = (state%saturation(i) - curve%residual)/(curve%maximum - curve%residual)
+        end associate
+        if (ground%law(disc%soil(i))%stress /= stress_net) vertical = vertical &
+          + bishop_factor(-state%pressure(i), effective)*state%pressure(i)
+      end if
+      state%stress(:, i) = [ratio*vertical, vertical, ratio*vertical, 0.0_dp]
+    end do
+  end subroutine initial_k0
+
+  !> Elevation of the ground surface at x [m].
+  pure real(dp) function ground_level(mesh, x) result(level)
+    type(mesh_t), intent(in) :: mesh
+    real(dp), intent(in) :: x !! [m]
+    real(dp) :: a(2), b(2)
+    integer :: k
+
+    level = -huge(level)
+    do k = 1, size(mesh%boundary_edge, 2)
+      a = mesh%x(:, mesh%boundary_edge(1, k))
+      b = mesh%x(:, mesh%boundary_edge(2, k))
+      if (x < min(a(1), b(1)) .or. x > max(a(1), b(1))) cycle
+      if (abs(b(1) - a(1)) > 0.0_dp) then
+        level = max(level, a(2) + (b(2) - a(2))*(x - a(1))/(b(1) - a(1)))
+      else
+        level = max(level, a(2), b(2))
+      end if
+    end do
+  end function ground_level
+
+  !> Nodal masses with the water they hold now: rain makes soil heavier [kg/m].
+  subroutine weight_masses(disc, ground, state)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, disc%n
+      associate (soil => disc%soil(i))
+        state%mass(i) = (1.0_dp - ground%porosity(soil))*ground%density_solid(soil)
+        if (ground%wet) state%mass(i) = state%mass(i) + ground%water_density*state%content(i)
+      end associate
+      state%mass(i) = state%mass(i)*disc%dual%area(i)
+    end do
+  end subroutine weight_masses
+
+  !> Weight and tractions [N/m], (2,n).
+  pure function weight_load(ground, mass, traction) result(load)
+    type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: mass(:)       !! [kg/m], (n)
+    real(dp), intent(in) :: traction(:,:) !! [N/m], (2,n)
+    real(dp) :: load(2, size(mass))
+
+    load = traction
+    load(2, :) = load(2, :) - ground%gravity*mass
+  end function weight_load
+end module talus_initial

@@ -1,0 +1,95 @@
+! SPDX-License-Identifier: MIT
+!> What changes with time. Fields that a run does not need stay unallocated. Copying a state by
+!> assignment saves it; assigning it back restores it.
+module talus_state
+  use talus_kinds, only: dp, i8
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_soil_law, only: soil_needs_strain, history_size, stress_bishop
+  use talus_suction_strain, only: suction_strain_none
+  implicit none
+  private
+  public :: state_t, water_balance_t, state_allocate
+
+  !> Water since the start of a stage [m3 per m of slope], and the low bits of long sums.
+  type :: water_balance_t
+    real(dp) :: stored_start = 0.0_dp !! in the soil when the stage began
+    real(dp) :: inflow = 0.0_dp       !! rain that entered, heads and fluxes inward
+    real(dp) :: outflow = 0.0_dp      !! seepage faces, heads and fluxes outward
+    real(dp) :: runoff = 0.0_dp       !! rain that did not enter
+    real(dp) :: inflow_lost = 0.0_dp, outflow_lost = 0.0_dp, runoff_lost = 0.0_dp
+  end type water_balance_t
+
+  type :: state_t
+    real(dp) :: time = 0.0_dp                   !! since the start of the run [s]
+    integer(i8) :: steps = 0_i8                 !! soil steps
+    integer(i8) :: seepage_steps = 0_i8
+    real(dp), allocatable :: u(:,:)             !! displacement from the reference [m], (2,n)
+    real(dp), allocatable :: u_zero(:,:)        !! displacement that counts as none [m], (2,n)
+    real(dp), allocatable :: v(:,:)             !! velocity, half a step ahead [m/s], (2,n)
+    real(dp), allocatable :: acceleration(:,:)  !! [m/s2], (2,n)
+    real(dp), allocatable :: f(:,:)             !! deformation gradient 11, 12, 21, 22, (4,n)
+    real(dp), allocatable :: f_drive(:,:)       !! smoothed, when it drives damage alone, (4,n)
+    real(dp), allocatable :: stress(:,:)        !! undamaged, without pore pressure [Pa], (4,n)
+    real(dp), allocatable :: strain(:,:)        !! total, where damage needs it, (4,n)
+    real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n); inelastic soil only
+    real(dp), allocatable :: stiffness(:)       !! stiffness left over the elastic one, (n)
+    real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
+    real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
+    real(dp), allocatable :: stabilising_lost(:) !! lost there as the soil softened [J/m], (n)
+    real(dp), allocatable :: damped(:)          !! taken by local damping [J/m], (n)
+    real(dp), allocatable :: mass(:)            !! true, with water [kg/m], (n)
+    real(dp), allocatable :: load(:,:)          !! weight and tractions [N/m], (2,n)
+    real(dp), allocatable :: u_load(:,:)        !! displacement when the load was set [m], (2,n)
+    real(dp) :: external = 0.0_dp               !! work of earlier loads and driven nodes [J/m]
+    ! Water; allocated when the ground is wet.
+    real(dp), allocatable :: jacobian(:)        !! J of the last soil step, (n)
+    real(dp), allocatable :: content(:)         !! water per reference area w [m3/m2], (n)
+    real(dp), allocatable :: pressure(:)        !! p_w [Pa], compression +, (n)
+    real(dp), allocatable :: saturation(:)      !! S_r, (n)
+    real(dp), allocatable :: ratio(:)           !! k_r, (n)
+    real(dp), allocatable :: potential(:)       !! Phi [Pa], (n)
+    real(dp), allocatable :: capacity(:)        !! dw/dp [1/Pa], (n)
+    real(dp), allocatable :: suction(:)         !! that the stress has seen [Pa], (n)
+    real(dp), allocatable :: water_work(:)      !! of stress on pore pressure or swelling [J/m3], (n)
+    type(water_balance_t) :: water
+  end type state_t
+
+contains
+
+  !> Allocate what the run needs, at rest and without stress.
+  subroutine state_allocate(state, disc, ground)
+    type(state_t), intent(out) :: state
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    integer :: n, i
+    logical :: inelastic, strained
+
+    n = disc%n
+    inelastic = .false.
+    strained = .false.
+    do i = 1, size(ground%law)
+      inelastic = inelastic .or. ground%law(i)%plasticity /= 0 .or. ground%law(i)%damage%driver /= 0
+      strained = strained .or. soil_needs_strain(ground%law(i))
+    end do
+    allocate (state%u(2, n), state%u_zero(2, n), state%v(2, n), state%acceleration(2, n), &
+              state%f(4, n), state%stress(4, n), state%mass(n), state%load(2, n), &
+              state%u_load(2, n), state%damped(n), source=0.0_dp)
+    state%f(1, :) = 1.0_dp
+    state%f(4, :) = 1.0_dp
+    if (strained) allocate (state%strain(4, n), source=0.0_dp)
+    if (strained .and. disc%damage_only) state%f_drive = state%f
+    if (inelastic) allocate (state%history(history_size, n), source=0.0_dp)
+    if (disc%stabilised) then
+      allocate (state%stabilising(n), state%stabilising_lost(n), source=0.0_dp)
+      allocate (state%stiffness(n), state%stiffness_old(n), source=1.0_dp)
+    end if
+    if (.not. ground%wet) return
+    allocate (state%content(n), state%pressure(n), state%saturation(n), state%ratio(n), &
+              state%potential(n), state%capacity(n), state%suction(n), source=0.0_dp)
+    allocate (state%jacobian(n), source=1.0_dp)
+    if (any(ground%law%stress == stress_bishop) .or. &
+        any(ground%law%swelling%kind /= suction_strain_none)) &
+      allocate (state%water_work(n), source=0.0_dp)
+  end subroutine state_allocate
+end module talus_state

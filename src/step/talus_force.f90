@@ -1,0 +1,93 @@
+! SPDX-License-Identifier: MIT
+!> Internal force as the adjoint of the strain, gathered by node (src/THEORY.md section 4), and the
+!> motion it causes: central differences with lumped mass (section 5).
+module talus_force
+  use talus_kinds, only: dp
+  use talus_scni, only: scni_t
+  implicit none
+  private
+  public :: force_one_level, force_unbalanced, motion_position, motion_velocity
+
+contains
+
+  !> First Piola stress of the first level alone.
+  subroutine force_one_level(area, q, r)
+    real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
+    real(dp), contiguous, intent(in) :: q(:,:)    !! area times Piola stress [N m/m], (4,n)
+    real(dp), contiguous, intent(inout) :: r(:,:) !! Piola stress [Pa], (4,n)
+    integer :: l
+
+    !$omp do schedule(static)
+    do l = 1, size(area)
+      r(:, l) = q(:, l)/area(l)
+    end do
+    !$omp end do
+  end subroutine force_one_level
+
+  !> Out-of-balance force: load plus stabilisation minus internal force.
+  subroutine force_unbalanced(scni, r, load, stabilising, force)
+    type(scni_t), intent(in) :: scni
+    real(dp), contiguous, intent(in) :: r(:,:)    !! smoothed Piola stress [Pa], (4,n)
+    real(dp), contiguous, intent(in) :: load(:,:) !! weight and tractions [N/m], (2,n)
+    real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: force(:,:)    !! out-of-balance force [N/m], (2,n)
+    real(dp) :: f1, f2
+    integer :: i, k, l
+
+    !$omp do schedule(static)
+    do i = 1, size(load, 2)
+      f1 = 0.0_dp
+      f2 = 0.0_dp
+      do k = scni%node_offset(i), scni%node_offset(i+1) - 1
+        l = scni%cell(k)
+        f1 = f1 + r(1, l)*scni%bt(1, k) + r(2, l)*scni%bt(2, k)
+        f2 = f2 + r(3, l)*scni%bt(1, k) + r(4, l)*scni%bt(2, k)
+      end do
+      force(1, i) = load(1, i) + stabilising(1, i) - f1
+      force(2, i) = load(2, i) + stabilising(2, i) - f2
+    end do
+    !$omp end do
+  end subroutine force_unbalanced
+
+  !> Positions at the next whole step.
+  subroutine motion_position(step, v, u)
+    real(dp), intent(in) :: step                  !! time step [s]
+    real(dp), contiguous, intent(in) :: v(:,:)    !! velocity half a step back [m/s], (2,n)
+    real(dp), contiguous, intent(inout) :: u(:,:) !! displacement [m], (2,n)
+    integer :: i
+
+    !$omp do schedule(static)
+    do i = 1, size(u, 2)
+      u(:, i) = u(:, i) + step*v(:, i)
+    end do
+    !$omp end do
+  end subroutine motion_position
+
+  !> Velocities at the next half step. Local damping takes a fraction of the out-of-balance force
+  !> against the velocity (Cundall 1987). `mobility` is one over mass, and 0 where motion is held.
+  subroutine motion_velocity(step, damping, mobility, force, v, acceleration, damped)
+    real(dp), intent(in) :: step    !! time step [s]
+    real(dp), intent(in) :: damping !! fraction, 0..1
+    real(dp), contiguous, intent(in) :: mobility(:,:)       !! [1/(kg/m)], (2,n)
+    real(dp), contiguous, intent(in) :: force(:,:)          !! out-of-balance force [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: v(:,:)           !! velocity [m/s], (2,n)
+    real(dp), contiguous, intent(inout) :: acceleration(:,:) !! with damping [m/s2], (2,n)
+    real(dp), contiguous, intent(inout) :: damped(:)        !! energy damped so far [J/m], (n)
+    real(dp) :: f, next
+    integer :: i, j
+
+    !$omp do schedule(static)
+    do i = 1, size(damped)
+      do j = 1, 2
+        f = force(j, i)
+        if (damping > 0.0_dp .and. abs(v(j, i)) > 0.0_dp) f = f - sign(damping*abs(f), v(j, i))
+        acceleration(j, i) = f*mobility(j, i)
+        next = v(j, i) + step*acceleration(j, i)
+        if (damping > 0.0_dp .and. mobility(j, i) > 0.0_dp) &
+          damped(i) = damped(i) + 0.5_dp*step*(force(j, i) - f)*(v(j, i) + next)
+        v(j, i) = next
+      end do
+    end do
+    !$omp end do
+  end subroutine motion_velocity
+end module talus_force

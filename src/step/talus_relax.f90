@@ -1,0 +1,140 @@
+! SPDX-License-Identifier: MIT
+!> Equilibrium of the soil by damped motion with scaled masses (src/THEORY.md section 5, two clocks).
+module talus_relax
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_conditions, only: conditions_t
+  use talus_soil_step, only: work_t, motion_t, soil_step
+  use talus_time_step, only: time_step_stable, water_bulk_modulus
+  use talus_sum, only: sum_products
+  use talus_audit, only: audit_driven
+  implicit none
+  private
+  public :: relax_t, relax, motion_prepare, unbalanced_ratio, largest_motion
+
+  integer, parameter, public :: relax_balanced = 0, relax_moving = 1, relax_exhausted = 2, &
+    relax_broken = 3
+
+  !> Steps between two looks at the balance.
+  integer, parameter :: look_every = 25
+
+  type :: relax_t
+    integer :: outcome = relax_balanced !! one of relax_*
+    integer :: steps = 0                !! steps taken
+    real(dp) :: ratio = 0.0_dp          !! out-of-balance force over applied force
+    real(dp) :: moved = 0.0_dp          !! largest displacement during the relaxation [m]
+    integer :: failed = 0               !! see soil_step
+  end type relax_t
+
+contains
+
+  !> Masses and step of a stage. Scaled masses give every node the same stable step, near one
+  !> second; true ones give real time.
+  subroutine motion_prepare(disc, ground, conditions, state, scaled, safety, motion, work)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(conditions_t), intent(in) :: conditions
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: scaled  !! scale the masses
+    real(dp), intent(in) :: safety !! step over stable step
+    type(motion_t), intent(inout) :: motion
+    type(work_t), intent(inout) :: work
+    real(dp), allocatable :: mass(:), bulk(:)
+    integer :: i, k
+
+    allocate (mass(disc%n))
+    mass = state%mass
+    if (scaled) then
+      allocate (bulk(disc%n))
+      call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
+      do i = 1, disc%n
+        associate (elastic => ground%law(disc%soil(i))%elastic)
+          mass(i) = 0.0_dp
+          do k = disc%dual%node_offset(i), disc%dual%node_offset(i+1) - 1
+            mass(i) = mass(i) + (elastic%bulk + elastic%shear*4.0_dp/3.0_dp + bulk(i)) &
+              *disc%dual%area(i)/sum((disc%mesh%x(:, disc%dual%node_neighbour(k)) &
+                                      - disc%mesh%x(:, i))**2)
+          end do
+        end associate
+      end do
+    end if
+    if (.not. allocated(motion%mobility)) allocate (motion%mobility(2, disc%n))
+    do i = 1, disc%n
+      motion%mobility(:, i) = merge(0.0_dp, 1.0_dp/mass(i), conditions%held(:, i))
+    end do
+    motion%step = safety*time_step_stable(disc, ground, state, motion, work)
+  end subroutine motion_prepare
+
+  !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
+  !> moved by more than `moved_max`, or `steps_max` steps were taken.
+  subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, state, work, &
+                   outcome)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(conditions_t), intent(in) :: conditions
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: tolerance !! [-]
+    integer, intent(in) :: steps_max
+    real(dp), intent(in) :: moved_max !! displacement that counts as failure [m]; huge() for none
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    type(relax_t), intent(out) :: outcome
+    real(dp), allocatable :: u_start(:,:)
+
+    u_start = state%u
+    outcome%outcome = relax_exhausted
+    do while (outcome%steps < steps_max)
+      call soil_step(disc, ground, motion, state, work, outcome%failed)
+      outcome%steps = outcome%steps + 1
+      if (outcome%failed > 0) then
+        outcome%outcome = relax_broken
+        return
+      end if
+      if (conditions%driven) call audit_driven(motion, work%force, state)
+      if (modulo(outcome%steps, look_every) /= 0) cycle
+      outcome%ratio = unbalanced_ratio(disc%n, motion, state, work)
+      outcome%moved = largest_motion(disc%n, state%u, u_start)
+      if (outcome%ratio <= tolerance) then
+        outcome%outcome = relax_balanced
+        return
+      else if (outcome%moved > moved_max) then
+        outcome%outcome = relax_moving
+        return
+      end if
+    end do
+  end subroutine relax
+
+  !> Out-of-balance force on the nodes that can move over the load or, when larger, the reactions.
+  real(dp) function unbalanced_ratio(n, motion, state, work) result(ratio)
+    integer, intent(in) :: n
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(in) :: state
+    type(work_t), intent(in) :: work
+    real(dp), allocatable :: free(:,:), held(:,:)
+    real(dp) :: applied
+
+    free = merge(work%force, 0.0_dp, motion%mobility > 0.0_dp)
+    held = work%force - free
+    applied = max(sum_products(2*n, state%load, state%load), sum_products(2*n, held, held))
+    ratio = 0.0_dp
+    if (applied > 0.0_dp) ratio = sqrt(sum_products(2*n, free, free)/applied)
+  end function unbalanced_ratio
+
+  !> Largest distance between two sets of positions [m].
+  real(dp) function largest_motion(n, u, u_start) result(largest)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: u(2,n), u_start(2,n)
+    integer :: i
+
+    largest = 0.0_dp
+    !$omp parallel do default(none) shared(n, u, u_start) private(i) reduction(max:largest) &
+    !$omp schedule(static)
+    do i = 1, n
+      largest = max(largest, sum((u(:, i) - u_start(:, i))**2))
+    end do
+    !$omp end parallel do
+    largest = sqrt(largest)
+  end function largest_motion
+end module talus_relax

@@ -1,0 +1,116 @@
+! SPDX-License-Identifier: MIT
+!> One explicit step of the soil (src/THEORY.md section 5), the file to read first:
+!>
+!>   u_n+1   = u_n + dt v_n+1/2                          motion_position
+!>   F_n+1   = 1 + G u_n+1, then W F                     strain_first, smooth_gradient
+!>   sigma   = law(F_n, F_n+1, suction), P = J sigma F^-T  stress_update
+!>   r       = affine residual, its force and its P      residual_gather
+!>   R       = W^T P                                     smooth_stress
+!>   f       = load + stabilisation - G^T R              force_unbalanced
+!>   v_n+3/2 = v_n+1/2 + dt f/m                          motion_velocity
+module talus_soil_step
+  use talus_kinds, only: dp, i8
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_strain, only: strain_first, strain_one_level
+  use talus_smooth, only: smooth_gradient, smooth_stress
+  use talus_stress_update, only: stress_update
+  use talus_residual, only: residual_gather
+  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity
+  implicit none
+  private
+  public :: work_t, motion_t, work_allocate, soil_step, soil_force
+
+  !> Fields that live within a step only.
+  type :: work_t
+    real(dp), allocatable :: y(:,:)           !! area times first-level gradient, then R, (4,n)
+    real(dp), allocatable :: h(:,:)           !! displacement gradient that the stress sees, (4,n)
+    real(dp), allocatable :: drive(:,:)       !! the one that drives damage alone, (4,n) or (4,0)
+    real(dp), allocatable :: q(:,:)           !! area times first Piola stress [N m/m], (4,n)
+    real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n)
+    real(dp), allocatable :: force(:,:)       !! out-of-balance force [N/m], (2,n)
+  end type work_t
+
+  !> How the nodes move in a stage.
+  type :: motion_t
+    real(dp) :: step = 0.0_dp              !! time step [s]
+    real(dp) :: damping = 0.0_dp           !! local damping, 0..1
+    logical :: coupled = .false.           !! pore pressure follows the soil
+    real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
+  end type motion_t
+
+contains
+
+  !> Allocate the fields of a step.
+  subroutine work_allocate(work, disc)
+    type(work_t), intent(out) :: work
+    type(disc_t), intent(in) :: disc
+
+    allocate (work%y(4, disc%n), work%h(4, disc%n), work%q(4, disc%n), &
+              work%stabilising(2, disc%n), work%force(2, disc%n), source=0.0_dp)
+    allocate (work%drive(4, merge(disc%n, 0, disc%damage_only)), source=0.0_dp)
+  end subroutine work_allocate
+
+  !> Advance the soil by one step. `failed` is 0, or code*n + node of the worst failure (codes of
+  !> talus_soil_law).
+  subroutine soil_step(disc, ground, motion, state, work, failed)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    integer, intent(out) :: failed
+
+    failed = 0
+    !$omp parallel default(none) shared(disc, ground, motion, state, work, failed)
+    call motion_position(motion%step, state%v, state%u)
+    call forces(disc, ground, motion%coupled, state, work, failed)
+    call motion_velocity(motion%step, motion%damping, motion%mobility, work%force, state%v, &
+                         state%acceleration, state%damped)
+    !$omp end parallel
+    state%steps = state%steps + 1_i8
+  end subroutine soil_step
+
+  !> Stress and out-of-balance force at the present position, without moving.
+  subroutine soil_force(disc, ground, coupled, state, work, failed)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    logical, intent(in) :: coupled
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    integer, intent(out) :: failed
+
+    failed = 0
+    !$omp parallel default(none) shared(disc, ground, coupled, state, work, failed)
+    call forces(disc, ground, coupled, state, work, failed)
+    !$omp end parallel
+  end subroutine soil_force
+
+  !> From displacement to out-of-balance force; within a parallel region.
+  subroutine forces(disc, ground, coupled, state, work, failed)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    logical, intent(in) :: coupled
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    integer, intent(inout) :: failed
+
+    call strain_first(disc%scni, state%u, work%y)
+    if (disc%two_levels .and. disc%damage_only) call smooth_gradient(disc%two_level, work%y, work%drive)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_gradient(disc%two_level, work%y, work%h)
+    else
+      call strain_one_level(disc%dual%area, work%y, work%h)
+    end if
+    call stress_update(disc, ground, coupled, work%h, work%drive, state, work%q, failed)
+    if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+      state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_stress(disc%two_level, work%q, work%y)
+    else
+      call force_one_level(disc%dual%area, work%q, work%y)
+    end if
+    call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
+  end subroutine forces
+end module talus_soil_step

@@ -1,0 +1,62 @@
+! SPDX-License-Identifier: MIT
+!> All eigenfrequencies of a small model by LAPACK, to see that no mode is spurious and that the
+!> estimate of the stable step is sharp (src/THEORY.md sections 4 and 5).
+module talus_spectrum
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_soil_step, only: work_t, motion_t
+  use talus_time_step, only: stiffness_apply, water_bulk_modulus
+  implicit none
+  private
+  public :: spectrum_frequencies
+
+  !> Largest model whose dense matrix is reasonable: (2n)^2 numbers.
+  integer, parameter, public :: spectrum_most_nodes = 1500
+
+  interface
+    subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
+      import :: dp
+      character, intent(in) :: jobz, uplo
+      integer, intent(in) :: n, lda, lwork
+      real(dp), intent(inout) :: a(lda,*)
+      real(dp), intent(out) :: w(*), work(*)
+      integer, intent(out) :: info
+    end subroutine dsyev
+  end interface
+
+contains
+
+  !> Squares of the eigenfrequencies of M^-1 K over the directions that can move, ascending.
+  subroutine spectrum_frequencies(disc, ground, state, motion, work, square)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    type(motion_t), intent(in) :: motion
+    type(work_t), intent(inout) :: work
+    real(dp), allocatable, intent(out) :: square(:) !! omega^2 [1/s2]
+    real(dp), allocatable :: a(:,:), d(:,:), nothing(:,:), bulk(:), lapack_work(:), root(:)
+    integer, allocatable :: free(:)
+    integer :: i, k, m, info
+
+    allocate (d(2, disc%n), nothing(2, disc%n), bulk(disc%n))
+    nothing = 0.0_dp
+    call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
+    root = sqrt(reshape(motion%mobility, [2*disc%n]))
+    free = pack([(i, i=1, 2*disc%n)], root > 0.0_dp)
+    m = size(free)
+    allocate (a(m, m), square(m), lapack_work(max(1, 34*m)))
+    do k = 1, m
+      d = 0.0_dp
+      d(1 + modulo(free(k) - 1, 2), 1 + (free(k) - 1)/2) = root(free(k))
+      call stiffness_apply(disc, ground, state, bulk, nothing, d, work)
+      do i = 1, m
+        a(i, k) = root(free(i))*work%force(1 + modulo(free(i) - 1, 2), 1 + (free(i) - 1)/2)
+      end do
+    end do
+    a = 0.5_dp*(a + transpose(a))
+    call dsyev('N', 'U', m, a, m, square, lapack_work, size(lapack_work), info)
+    if (info /= 0) square = -1.0_dp
+  end subroutine spectrum_frequencies
+end module talus_spectrum

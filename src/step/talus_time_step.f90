@@ -1,0 +1,155 @@
+! SPDX-License-Identifier: MIT
+!> Largest stable step of the soil: 2/omega of the highest eigenfrequency of M^-1 K, found by power
+!> iteration without a matrix (src/THEORY.md section 5). K is the elastic tangent in the present
+!> shape with stabilisation and, where the pore water moves with the soil, its stiffness.
+module talus_time_step
+  use talus_kinds, only: dp
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_sum, only: sum_products
+  use talus_elastic, only: elastic_piola_tangent
+  use talus_soil_law, only: stress_bishop, bishop_factor
+  use talus_strain, only: strain_first, strain_one_level
+  use talus_smooth, only: smooth_gradient, smooth_stress
+  use talus_residual, only: residual_gather
+  use talus_force, only: force_one_level, force_unbalanced
+  use talus_soil_step, only: work_t, motion_t
+  implicit none
+  private
+  public :: time_step_stable, stiffness_apply, water_bulk_modulus
+
+  !> Relative change of the eigenvalue at which the iteration stops, and its most turns.
+  real(dp), parameter :: power_tolerance = 1.0e-5_dp
+  integer, parameter :: power_max = 400
+
+contains
+
+  !> Largest stable step [s], without safety. 0 when no node can move.
+  real(dp) function time_step_stable(disc, ground, state, motion, work) result(step)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    type(motion_t), intent(in) :: motion
+    type(work_t), intent(inout) :: work
+    real(dp), allocatable :: d(:,:), bulk(:), nothing(:,:)
+    real(dp) :: square, before
+    integer :: turn
+
+    allocate (d(2, disc%n), bulk(disc%n), nothing(2, disc%n))
+    nothing = 0.0_dp
+    call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
+    call start_vector(motion%mobility, d)
+    step = 0.0_dp
+    if (sum_products(2*disc%n, d, d) <= 0.0_dp) return
+    before = 0.0_dp
+    do turn = 1, power_max
+      ! In the metric of the mass the operator is symmetric: omega^2 = d.Kd/(d.Md) with
+      ! d = M^-1 K d_before, where d.Md = d.K d_before.
+      d = d/sqrt(sum_products(2*disc%n, d, d))
+      call stiffness_apply(disc, ground, state, bulk, nothing, d, work)
+      square = rayleigh(disc%n, d, work%force, motion%mobility)
+      d = work%force*motion%mobility
+      if (abs(square - before) <= power_tolerance*square) exit
+      before = square
+    end do
+    step = 2.0_dp/sqrt(square)
+  end function time_step_stable
+
+  !> d.Kd/(d.Md) over the nodes that can move.
+  real(dp) function rayleigh(n, d, kd, mobility)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: d(2,n), kd(2,n), mobility(2,n)
+    real(dp), allocatable :: md(:,:)
+
+    allocate (md(2, n))
+    md = 0.0_dp
+    where (mobility > 0.0_dp) md = d/mobility
+    rayleigh = sum_products(2*n, d, kd)/sum_products(2*n, d, md)
+  end function rayleigh
+
+  !> Alternating values with an irregular part, so that no mode is left out.
+  pure subroutine start_vector(mobility, d)
+    real(dp), intent(in) :: mobility(:,:)
+    real(dp), intent(out) :: d(:,:)
+    integer :: i, j
+
+    do i = 1, size(d, 2)
+      do j = 1, 2
+        d(j, i) = real(modulo(i*(7919 + 104729*j), 1009), dp)/1009.0_dp - 0.5_dp
+      end do
+    end do
+    where (mobility <= 0.0_dp) d = 0.0_dp
+  end subroutine start_vector
+
+  !> Stiffness of the pore water against a change of volume at constant water [Pa].
+  subroutine water_bulk_modulus(disc, ground, state, coupled, bulk)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    logical, intent(in) :: coupled
+    real(dp), intent(out) :: bulk(:) !! (n)
+    real(dp) :: effective
+    integer :: i, soil
+
+    bulk = 0.0_dp
+    if (.not. (coupled .and. ground%wet)) return
+    do i = 1, disc%n
+      soil = disc%soil(i)
+      if (ground%law(soil)%stress /= stress_bishop) cycle
+      associate (curve => ground%curve(soil))
+        effective = (state%saturation(i) - curve%residual)/(curve%maximum - curve%residual)
+      end associate
+      ! w = pore S: S dJ + capacity dp = 0.
+      bulk(i) = bishop_factor(-state%pressure(i), effective)*state%saturation(i) &
+                *state%jacobian(i)/state%capacity(i)
+    end do
+  end subroutine water_bulk_modulus
+
+  !> work%force = K d.
+  subroutine stiffness_apply(disc, ground, state, bulk, nothing, d, work)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    real(dp), contiguous, intent(in) :: bulk(:)      !! stiffness of the pore water [Pa], (n)
+    real(dp), contiguous, intent(in) :: nothing(:,:) !! zeros, (2,n)
+    real(dp), contiguous, intent(in) :: d(:,:)       !! displacement [m], (2,n)
+    type(work_t), intent(inout) :: work
+    real(dp), allocatable :: energy(:), loss(:), one(:)
+    integer :: i
+
+    allocate (energy(disc%n), loss(disc%n), one(disc%n))
+    loss = 0.0_dp
+    one = 1.0_dp
+    !$omp parallel default(none) shared(disc, ground, state, bulk, nothing, d, work, energy, loss) &
+    !$omp shared(one) &
+    !$omp private(i)
+    call strain_first(disc%scni, d, work%y)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_gradient(disc%two_level, work%y, work%h)
+    else
+      call strain_one_level(disc%dual%area, work%y, work%h)
+    end if
+    !$omp do schedule(static)
+    do i = 1, disc%n
+      call elastic_piola_tangent(ground%law(disc%soil(i))%elastic, bulk(i), state%f(:, i), &
+                                 work%h(:, i), work%q(:, i))
+      work%q(:, i) = disc%dual%area(i)*work%q(:, i)
+    end do
+    !$omp end do
+    if (disc%stabilised) call residual_gather(disc%stabilise, d, work%h, one, one, work%q, &
+                                              work%stabilising, energy, loss)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_stress(disc%two_level, work%q, work%y)
+    else
+      call force_one_level(disc%dual%area, work%q, work%y)
+    end if
+    call force_unbalanced(disc%scni, work%y, nothing, work%stabilising, work%force)
+    !$omp do schedule(static)
+    do i = 1, disc%n
+      work%force(:, i) = -work%force(:, i)
+    end do
+    !$omp end do
+    !$omp end parallel
+  end subroutine stiffness_apply
+end module talus_time_step

@@ -15,9 +15,13 @@ from PIL import Image
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-import plot_all  # noqa: E402  (found through the path above)
+import animate  # noqa: E402  (found through the path above)
+import plot_all  # noqa: E402
+import plot_field  # noqa: E402
+import plot_profiles  # noqa: E402
+import plot_sequence  # noqa: E402
 from talus_result import CellShapes, Result, ResultError, along_vertical  # noqa: E402
-from talus_style import display_units, seconds, time_text  # noqa: E402
+from talus_style import display_units, seconds, time_text, use_style  # noqa: E402
 
 
 def write_result(path):
@@ -97,7 +101,7 @@ class Figures(unittest.TestCase):
         self.assertGreater(len(colours), 20, f"{path} looks empty")
 
     def test_all_figures(self):
-        written = plot_all.draw_all(self.folder, dpi=60)
+        written = plot_all.draw_all(self.folder, dpi=50)
         names = {path.name for path in written}
         wanted = {"tiny_damage.png", "tiny_damage_sequence.png", "tiny_profiles.png"}
         wanted |= {"tiny_histories.png", "tiny_water_balance.png", "tiny_damage.gif"}
@@ -116,19 +120,26 @@ class Figures(unittest.TestCase):
         )
 
     def test_options(self):
-        for name, *options in (
-            ("plot_field.py", "--field", "stress_xy", "--reference", "--snapshot", "0"),
-            ("plot_field.py", "--field", "displacement_x", "--time", "2h", "--limits", "-1", "1"),
-            ("plot_sequence.py", "--field", "saturation", "--times", "0", "120min", "--columns", "1"),
-            ("plot_profiles.py", "--x", "0", "1.3", "4", "--deformed"),
-            ("animate.py", "--field", "velocity", "--deformed", "2", "--rate", "4"),
-        ):
-            suffix = ".gif" if name == "animate.py" else ".png"
-            output = self.folder / f"{name}{len(options)}{suffix}"
-            done = self.script(name, "--output", str(output), "--dpi", "60", *options)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(done.stdout.strip(), str(output))
+        use_style()
+        cases = (
+            (plot_field, "--field", "stress_xy", "--reference", "--snapshot", "0"),
+            (plot_field, "--field", "displacement_x", "--time", "2h", "--limits", "-1", "1"),
+            (plot_sequence, "--field", "saturation", "--times", "0", "120min", "--columns", "1"),
+            (plot_profiles, "--x", "0", "1.3", "--deformed", "--fields", "pore_pressure"),
+            (animate, "--field", "velocity", "--deformed", "2", "--rate", "4"),
+        )
+        for case, (module, *options) in enumerate(cases):
+            output = self.folder / f"{case}{'.gif' if module is animate else '.png'}"
+            common = [str(self.path), "--output", str(output), "--dpi", "50"]
+            with Result(self.path) as result:
+                module.draw(result, module.parser().parse_args([*common, *options]))
             self.assert_drawn(output)
+
+    def test_script_names_its_file(self):
+        done = self.script("plot_water_balance.py", "--dpi", "50")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(Path(done.stdout.strip()).name, "tiny_water_balance.png")
+        self.assert_drawn(Path(done.stdout.strip()))
 
     def test_mistakes_are_explained(self):
         wrong_field = self.script("plot_field.py", "--field", "damge")
@@ -136,8 +147,8 @@ class Figures(unittest.TestCase):
         self.assertIn("no field 'damge'", wrong_field.stderr)
         self.assertIn("plastic_strain", wrong_field.stderr)
         self.assertNotIn("Traceback", wrong_field.stderr)
-        wrong_snapshot = self.script("plot_field.py", "--snapshot", "9")
-        self.assertIn("000000 to 000002", wrong_snapshot.stderr)
+        with Result(self.path) as result, self.assertRaisesRegex(ResultError, "000000 to 000002"):
+            result.snapshot("9")
         with self.assertRaisesRegex(ResultError, "nothing.h5"):
             Result(self.folder / "nothing.h5")
 

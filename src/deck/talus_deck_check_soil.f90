@@ -3,11 +3,12 @@
 module talus_deck_check_soil
   use talus_kinds, only: dp
   use talus_const, only: deg
+  use talus_text, only: text_of
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, soil_t, damage_t, deck_given, deck_exceeds, deck_soil_index, &
     deck_water_index, deck_damage_index
   use talus_deck_store, only: store_t, store_sections
-  use talus_deck_extent, only: extent_t, extent_of
+  use talus_deck_extent, only: extent_t, extent_of, extent_holds
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
   private
@@ -42,7 +43,43 @@ contains
         call check_suction(store, at(i), soil, deck, messages)
       end associate
     end do
+    if (extent%is_known .and. size(at) > 0) call check_cover(store, at(1), deck, extent, messages)
   end subroutine check_soils
+
+  !> Every part of the body needs a soil; looked at on a grid of points, gaps finer than that are
+  !! found when the nodes are made.
+  subroutine check_cover(store, section, deck, extent, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section             !! of the first soil
+    type(deck_t), intent(in) :: deck
+    type(extent_t), intent(in) :: extent
+    type(messages_t), intent(inout) :: messages
+    integer, parameter :: n = 100
+    real(dp) :: x, y
+    logical :: is_covered
+    integer :: i, j, k
+
+    do j = 1, n
+      y = extent%bottom + (real(j, dp) - 0.5_dp)/real(n, dp)*(extent%top - extent%bottom)
+      do i = 1, n
+        x = extent%left + (real(i, dp) - 0.5_dp)/real(n, dp)*(extent%right - extent%left)
+        if (.not. extent_holds(deck%geometry, x, y)) cycle
+        is_covered = .false.
+        do k = 1, size(deck%soil)
+          associate (soil => deck%soil(k))
+            is_covered = is_covered .or. (x >= soil%from_x .and. x <= soil%to_x .and. &
+                                          y >= soil%from_y .and. y <= soil%to_y)
+          end associate
+        end do
+        if (is_covered) cycle
+        call complain(store, section, 'name', 'no soil at x = '//text_of(x, 3)//', y = '// &
+                      text_of(y, 3), messages, &
+                      'soils that fill the body, e.g. a first one without '// &
+                      'bounds')
+        return
+      end do
+    end do
+  end subroutine check_cover
 
   !> A region whose ends are in the wrong order is empty.
   subroutine check_region(store, section, from_x, to_x, from_y, to_y, messages)

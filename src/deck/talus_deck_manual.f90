@@ -153,7 +153,7 @@ contains
     character(:), allocatable :: text
 
     text = '# Deck reference'//newline//newline// &
-      '<!-- Made from the key table in src/deck by `talus keys --markdown`; do not edit. -->'// &
+      '<!-- Made from the key table in src/deck by `talus manual`; do not edit. -->'// &
       newline//newline// &
       wrapped('A deck is a Fortran namelist file: groups from `&name` to `/`, `key = value` '// &
       'lines, text in quotes, comments after `!`, lists with commas. Names are '// &

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
-from talus_map import FieldMap, FieldScale, add_map_options, default_field, view_of
+from talus_map import FieldMap, FieldScale, add_map_options, default_field, map_size, view_of
 from talus_style import figure_path, parser_of, run_main, time_text
 
 
@@ -18,14 +18,13 @@ def draw(result, arguments):
         snapshots = [snapshots[i] for i in pick]
     field = arguments.field or default_field(result)
     scale = FieldScale(result, field, snapshots, arguments.limits)
-    (x0, x1), (y0, y1) = view_of(result, snapshots, arguments.deformed)
-    width = 7.0
-    height = min(7.0, max(2.2, (width - 1.5) * (y1 - y0) / (x1 - x0) + 0.8))
-    figure, axes = plt.subplots(figsize=(width, height), dpi=arguments.dpi)
+    view = view_of(result, snapshots, arguments.deformed)
+    width, height = map_size(view, 5.6, 6.5)
+    figure, axes = plt.subplots(figsize=(max(width + 1.4, 3.2), height + 0.9), dpi=arguments.dpi)
     field_map = FieldMap(axes, result, scale, arguments.deformed)
     cells = field_map.show(snapshots[0])
-    axes.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="x [m]", ylabel="y [m]", title=" ")
-    scale.add_bar(figure, cells, cax=axes.inset_axes([1.02, 0.0, 0.02, 1.0]))
+    axes.set(xlim=view[0], ylim=view[1], xlabel="x [m]", ylabel="y [m]", title=" ")
+    scale.add_bar(figure, cells, cax=axes.inset_axes([1.0 + 0.1 / width, 0.0, 0.12 / width, 1.0]))
     figure.canvas.draw()
     figure.set_layout_engine("none")
     frames = []

@@ -42,7 +42,7 @@ def figures_of(result, folder, dpi):
     plan.append((plot_profiles, "profiles", []))
     plan.append((plot_histories, "histories", []))
     plan.append((plot_water_balance, "water_balance", []))
-    plan.append((animate, best, ["--field", best]))
+    plan.append((animate, best, ["--field", best, "--frames", "60"]))
     done = set()
     for module, name, options in plan:
         suffix = ".gif" if module is animate else ".png"

@@ -4,7 +4,7 @@
 
 import matplotlib.pyplot as plt
 
-from talus_map import FieldMap, FieldScale, add_map_options, default_field, shape_note, view_of
+from talus_map import FieldMap, FieldScale, add_map_options, default_field, map_size, shape_note, view_of
 from talus_style import figure_path, parser_of, run_main, save, seconds, time_text
 
 
@@ -13,15 +13,14 @@ def draw(result, arguments):
     snapshot = result.snapshot(arguments.snapshot, arguments.time)
     field = arguments.field or default_field(result)
     scale = FieldScale(result, field, [snapshot], arguments.limits)
-    (x0, x1), (y0, y1) = view_of(result, [snapshot], arguments.deformed)
-    width = 7.0
-    height = min(8.0, max(2.2, (width - 1.5) * (y1 - y0) / (x1 - x0) + 0.8))
-    figure, axes = plt.subplots(figsize=(width, height))
+    view = view_of(result, [snapshot], arguments.deformed)
+    width, height = map_size(view, 5.6, 6.5)
+    figure, axes = plt.subplots(figsize=(max(width + 1.4, 3.2), height + 0.9))
     cells = FieldMap(axes, result, scale, arguments.deformed).show(snapshot)
-    axes.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="x [m]", ylabel="y [m]")
+    axes.set(xlim=view[0], ylim=view[1], xlabel="x [m]", ylabel="y [m]")
     note = shape_note(arguments.deformed)
     axes.set_title(time_text(result, snapshot) + (f" ({note})" if note else ""))
-    scale.add_bar(figure, cells, cax=axes.inset_axes([1.02, 0.0, 0.02, 1.0]))
+    scale.add_bar(figure, cells, cax=axes.inset_axes([1.0 + 0.1 / width, 0.0, 0.12 / width, 1.0]))
     path = arguments.output or figure_path(result.path, field)
     return save(figure, path, arguments.dpi)
 

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from talus_result import ResultError
 from talus_style import LINES, display_units, figure_path, parser_of, run_main, save, time_scale
 
-ORDER = ("external", "kinetic", "strain", "plastic", "damage", "damping", "stabilisation")
+ORDER = ("external", "kinetic", "strain", "plastic", "damage", "water", "damping", "stabilisation")
 
 
 def stages_of(history):
@@ -27,8 +27,11 @@ def rows_of(result, history):
     energies.sort(key=lambda n: next((k for k, w in enumerate(ORDER) if w in n), len(ORDER)))
     moved = [n for n in history if units[n] == "m" and "displacement" in n]
     wrong = [n for n in history if n == "energy_error"]
-    groups = (("Displacement", moved, True), ("Energy", energies, False),
-              ("Relative energy error", wrong, True))
+    groups = (
+        ("Displacement", moved, True),
+        ("Energy", energies, False),
+        ("Relative energy error", wrong, True),
+    )
     return [(label, names, units[names[0]], log) for label, names, log in groups if names]
 
 
@@ -36,6 +39,15 @@ def label_of(name, group):
     """Short label of a column in its panel: 'energy_kinetic' is 'kinetic'."""
     words = [w for w in name.split("_") if w not in (group.lower(), "work")]
     return " ".join(words) or name
+
+
+def stage_axis(history, part):
+    """Abscissae in a stage and their label: time, or steps where time stands still."""
+    time = history["time"][part] - history["time"][part][0]
+    if time[-1] <= 0.0:
+        return history["step"][part] - history["step"][part][0], "Steps in stage"
+    scale, unit = time_scale(time[-1])
+    return time * scale, f"Time in stage [{unit}]"
 
 
 def draw(result, arguments):
@@ -59,13 +71,12 @@ def draw(result, arguments):
         floor = 1e-4 * largest * factor
         for column, (stage, part) in enumerate(stages):
             axes = grid[row, column]
-            time = history["time"][part] - history["time"][part][0]
-            scale, unit = time_scale(time[-1])
+            along, label = stage_axis(history, part)
             for name, colour in zip(names, LINES * 4):
                 values = history[name][part] * factor
                 if log:
                     values = np.where(np.abs(values) > floor, np.abs(values), np.nan)
-                axes.plot(time * scale, values, color=colour, label=label_of(name, group))
+                axes.plot(along, values, color=colour, label=label_of(name, group))
             if log:
                 axes.set_yscale("log")
             axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
@@ -73,7 +84,7 @@ def draw(result, arguments):
             if row == 0:
                 axes.set_title(stage)
             if row == len(rows) - 1:
-                axes.set_xlabel(f"Time in stage [{unit}]")
+                axes.set_xlabel(label)
         grid[row, 0].set_ylabel(f"{group} [{shown}]" if shown else group)
         if len(names) > 1:
             grid[row, -1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -9,8 +9,17 @@ from matplotlib.ticker import MaxNLocator
 
 from talus_result import ResultError, along_vertical
 from talus_style import (
-    GREY, INK, axis_label, display_units, figure_path, finite_range, parser_of, run_main, save,
-    seconds, time_text,
+    GREY,
+    INK,
+    axis_label,
+    display_units,
+    figure_path,
+    finite_range,
+    parser_of,
+    run_main,
+    save,
+    seconds,
+    time_text,
 )
 
 FIELDS = ("pore_pressure", "suction", "saturation")
@@ -21,9 +30,7 @@ def chosen(result, arguments):
     if arguments.times:
         return [result.snapshot(time=time) for time in arguments.times]
     wet = [s for s in result.numbered() if any(result.has(name, s) for name in FIELDS)]
-    changed = [
-        s for k, s in enumerate(wet) if k == 0 or s.time > wet[k - 1].time + 1e-3 * wet[-1].time
-    ]
+    changed = [s for k, s in enumerate(wet) if k == 0 or s.time > wet[k - 1].time + 1e-3 * wet[-1].time]
     pick = np.unique(np.linspace(0, len(changed) - 1, arguments.count).round().astype(int))
     return [changed[i] for i in pick]
 
@@ -35,29 +42,31 @@ def draw_key(axes, result, lines):
     for letter, x in zip("ABCDEFGH", lines):
         y, _ = along_vertical(result, result.nodes, result.nodes[:, 1], x)
         axes.plot([x, x], [y[0], y[-1]], color=GREY, linewidth=1.2)
-        axes.annotate(letter, (x, y[-1]), (0, 3), textcoords="offset points", ha="center",
-                      fontweight="bold")
+        axes.annotate(letter, (x, y[-1]), (0, 3), textcoords="offset points", ha="center", fontweight="bold")
     axes.set_aspect("equal", anchor="W")
     axes.margins(0.03, 0.2)
     axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.set_axis_on()
 
 
 def draw(result, arguments):
     """Draw and save; returns the file's name."""
-    wanted = arguments.fields or (
-        "pore_pressure" if result.has("pore_pressure") else "suction", "saturation")
+    wanted = arguments.fields or ("pore_pressure" if result.has("pore_pressure") else "suction", "saturation")
     names = [name for name in wanted if result.has(name)]
     if not names:
         raise ResultError(f"{result.path}: no pore pressure, suction or saturation stored")
     snapshots = chosen(result, arguments)
     low, high = finite_range([result.nodes[:, 0]])
-    lines = arguments.x or [low + part * (high - low) for part in (0.25, 0.5, 0.75)]
+    narrow = high - low < 0.5 * np.ptp(result.nodes[:, 1])
+    places = (0.5,) if narrow else (0.25, 0.5, 0.75)
+    lines = arguments.x or [low + part * (high - low) for part in places]
     colours = plt.get_cmap("viridis_r")(np.linspace(0.1, 1.0, len(snapshots)))
-    figure = plt.figure(figsize=(7.4, 1.9 + 2.3 * len(lines)))
-    grid = figure.add_gridspec(
-        len(lines) + 1, len(names), height_ratios=[0.8] + [1.0] * len(lines)
-    )
-    draw_key(figure.add_subplot(grid[0, : max(1, len(names) - 1)]), result, lines)
+    figure = plt.figure(figsize=(7.4, 1.9 + (3.3 if len(lines) == 1 else 2.3 * len(lines))))
+    grid = figure.add_gridspec(len(lines) + 1, len(names), height_ratios=[0.8] + [1.0] * len(lines))
+    key = figure.add_subplot(grid[0, : max(1, len(names) - 1)])
+    key.set_axis_off()
+    if not narrow:
+        draw_key(key, result, lines)
     first = {}
     for row, (letter, x) in enumerate(zip("ABCDEFGH", lines)):
         for column, name in enumerate(names):
@@ -65,9 +74,7 @@ def draw(result, arguments):
             first.setdefault(name, axes)
             data = [result.field(name, s) for s in snapshots]
             span = finite_range(data)
-            factor, units = display_units(
-                result.units(name, snapshots[-1]), max(abs(span[0]), abs(span[1]))
-            )
+            factor, units = display_units(result.units(name, snapshots[-1]), max(abs(span[0]), abs(span[1])))
             for snapshot, values, colour in zip(snapshots, data, colours):
                 y, value = along_vertical(
                     result, result.positions(snapshot, arguments.deformed), values * factor, x
@@ -95,9 +102,7 @@ def draw(result, arguments):
 def parser():
     """Command line."""
     options = parser_of(__doc__)
-    options.add_argument(
-        "--x", type=float, nargs="+", help="where the lines stand [m] (at 1/4, 1/2, 3/4)"
-    )
+    options.add_argument("--x", type=float, nargs="+", help="where the lines stand [m] (at 1/4, 1/2, 3/4)")
     options.add_argument(
         "--fields", nargs="+", choices=FIELDS, help="what to draw (pore pressure and saturation)"
     )

@@ -5,7 +5,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from talus_map import FieldMap, FieldScale, add_map_options, default_field, shape_note, view_of
+from talus_map import FieldMap, FieldScale, add_map_options, default_field, map_size, shape_note, view_of
 from talus_style import figure_path, parser_of, run_main, save, seconds, time_text
 
 
@@ -25,23 +25,25 @@ def draw(result, arguments):
     snapshots = chosen(result, arguments)
     field = arguments.field or default_field(result)
     scale = FieldScale(result, field, snapshots, arguments.limits)
-    (x0, x1), (y0, y1) = view_of(result, snapshots, arguments.deformed)
-    columns = min(arguments.columns, len(snapshots))
+    view = view_of(result, snapshots, arguments.deformed)
+    width, height = map_size(view, 2.95, 4.5)
+    columns = min(arguments.columns or max(2, int(6.8 / max(width + 0.25, 1.1))), len(snapshots))
+    if arguments.columns or columns == 1:
+        width, height = map_size(view, 5.9 / columns, 4.5)
     rows = -(-len(snapshots) // columns)
-    width = 7.4
-    height = (width - 1.5) / columns * (y1 - y0) / (x1 - x0)
     figure, grid = plt.subplots(
         rows,
         columns,
-        figsize=(width, min(10.0, rows * (height + 0.32) + 0.45)),
+        figsize=(columns * max(width, 1.1) + 1.5, min(10.0, rows * (height + 0.32) + 0.45)),
         sharex=True,
         sharey=True,
         squeeze=False,
     )
     for axes, snapshot in zip(grid.flat, snapshots):
         cells = FieldMap(axes, result, scale, arguments.deformed).show(snapshot)
-        axes.set(xlim=(x0, x1), ylim=(y0, y1))
-        axes.set_title(time_text(result, snapshot), fontsize=8)
+        axes.set(xlim=view[0], ylim=view[1])
+        title = time_text(result, snapshot)
+        axes.set_title(title.replace(", ", "\n") if width < 1.8 else title, fontsize=8)
     for axes in grid.flat[len(snapshots) :]:
         axes.set_axis_off()
     for column in range(columns):
@@ -66,7 +68,7 @@ def parser():
     when.add_argument("--snapshots", nargs="+", help="numbers or names; -1 is the last")
     when.add_argument("--times", nargs="+", type=seconds, help="nearest snapshots: 0 90min 1.5h")
     when.add_argument("--count", type=int, default=6, help="maps spread over the run (6)")
-    options.add_argument("--columns", type=int, default=2, help="maps beside each other (2)")
+    options.add_argument("--columns", type=int, help="maps beside each other")
     return options
 
 

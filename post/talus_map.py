@@ -20,9 +20,7 @@ class FieldScale:
         self.field = field
         look = look_of(field)
         low, high = finite_range(result.field(field, s) for s in snapshots)
-        self.factor, self.units = display_units(
-            result.units(field, snapshots[-1]), max(abs(low), abs(high))
-        )
+        self.factor, self.units = display_units(result.units(field, snapshots[-1]), max(abs(low), abs(high)))
         low, high = low * self.factor, high * self.factor
         if look.signed:
             high = max(abs(low), abs(high))
@@ -48,9 +46,7 @@ class FieldScale:
 
     def add_bar(self, figure, cells, **place):
         """Colour bar with its label; a line marks zero where maps have a line at zero."""
-        bar = figure.colorbar(
-            cells, label=self.label, extend="both" if self.clipped else "neither", **place
-        )
+        bar = figure.colorbar(cells, label=self.label, extend="both" if self.clipped else "neither", **place)
         bar.outline.set_linewidth(0.7)
         if isinstance(self.norm, TwoSlopeNorm):
             bar.ax.axhline(0.0, color=INK, linewidth=1.0)
@@ -91,7 +87,9 @@ class FieldMap:
         axes.add_collection(self._cells)
         axes.add_collection(self._border)
         axes.set_aspect("equal")
-        axes.xaxis.set_major_locator(MaxNLocator(7, steps=[1, 2, 5, 10]))
+        width, height = np.ptp(result.nodes, axis=0)
+        few = int(np.clip(7 * width / height, 1, 7))
+        axes.xaxis.set_major_locator(MaxNLocator(few, steps=[1, 2, 5, 10], min_n_ticks=1))
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
 
     def show(self, snapshot):
@@ -120,6 +118,14 @@ def view_of(result, snapshots, deformed):
     return (low[0] - margin, high[0] + margin), (low[1] - margin, high[1] + margin)
 
 
+def map_size(view, width, height):
+    """Size (width, height) of one map [inch] that fits into the given one."""
+    (x0, x1), (y0, y1) = view
+    slope = (y1 - y0) / (x1 - x0)
+    across = min(width, height / slope)
+    return across, across * slope
+
+
 def default_field(result):
     """The field that tells most about a failure, of those stored."""
     for name in ("damage", "plastic_strain", "displacement", "pore_pressure"):
@@ -133,9 +139,7 @@ def default_field(result):
 
 def add_map_options(parser):
     """Command-line options of every map."""
-    parser.add_argument(
-        "--field", help="stored field or component, e.g. damage, stress_xy, displacement_x"
-    )
+    parser.add_argument("--field", help="stored field or component, e.g. damage, stress_xy, displacement_x")
     shape = parser.add_mutually_exclusive_group()
     shape.add_argument(
         "--deformed",

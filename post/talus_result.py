@@ -78,7 +78,7 @@ class Result:
         return numbered
 
     def snapshot(self, name=None, time=None):
-        """The snapshot of this name or number (-1 is the last), or the one nearest to a time [s]."""
+        """The snapshot of this name or number (-1: the last), or the nearest to a time [s]."""
         numbered = self.numbered()
         if time is not None:
             return min(numbered, key=lambda s: abs(s.time - time))
@@ -90,11 +90,9 @@ class Result:
         try:
             return numbered[int(name)]
         except (ValueError, IndexError):
-            listed = f"{numbered[0].name} to {numbered[-1].name}"
-            others = ", ".join(s.name for s in self.snapshots if not s.name.isdigit())
-            raise ResultError(
-                f"{self.path}: no snapshot '{name}'; there are {listed}{' and ' if others else ''}{others}"
-            ) from None
+            listed = [f"{numbered[0].name} to {numbered[-1].name}"]
+            listed += [s.name for s in self.snapshots if not s.name.isdigit()]
+            raise ResultError(f"{self.path}: no snapshot '{name}'; there are {', '.join(listed)}") from None
 
     def fields(self, snapshot):
         """Names of the stored fields."""

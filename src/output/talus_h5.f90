@@ -204,7 +204,8 @@ contains
       call h5awrite_f(attribute, data_type, address, ierr)
       call h5aclose_f(attribute, ignored)
     end if
-    if (ierr /= 0) call h5_fail(file, object, 'attribute '''//name//''' could not be written', status)
+    if (ierr /= 0) call h5_fail(file, object, 'attribute '''//name//''' could not be written', &
+      status)
     call h5sclose_f(space, ignored)
     call h5oclose_f(owner, ignored)
   end subroutine write_attribute

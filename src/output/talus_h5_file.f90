@@ -155,7 +155,8 @@ contains
       call h5olink_f(file%here, file%id, name, ierr, lcpl_id=parents)
       call h5pclose_f(parents, ignored)
     end if
-    if (ierr /= 0) call h5_fail(file, name, 'could not be written (name in use, disk full?)', status)
+    if (ierr /= 0) call h5_fail(file, name, 'could not be written (name in use, disk full?)', &
+      status)
     call h5gclose_f(file%here, ignored)
     file%here = file%id
   end subroutine h5_group_end

@@ -34,7 +34,7 @@ def write_result(path):
         for column in range(nx - 1):
             a = row * nx + column
             quad = [a, a + 1, a + nx + 1, a + nx]
-            for cell in ([quad[:3], [a, *quad[2:]]] if column == 1 else [quad]):
+            for cell in [quad[:3], [a, *quad[2:]]] if column == 1 else [quad]:
                 corners += cell
                 offset.append(len(corners))
     with h5py.File(path, "w") as file:
@@ -116,7 +116,10 @@ class Figures(unittest.TestCase):
         """Run one script as a user does."""
         return subprocess.run(
             [sys.executable, POST / name, self.path, *options],
-            capture_output=True, text=True, cwd=self.folder, check=False,
+            capture_output=True,
+            text=True,
+            cwd=self.folder,
+            check=False,
         )
 
     def test_options(self):

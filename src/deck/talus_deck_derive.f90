@@ -72,7 +72,7 @@ contains
       call default_real(store, section, 'storm_step_minimum', &
                         real_of(store, section, 'storm_step')/64.0_dp)
     end if
-    call default_real(store, section, 'damping', merge(0.0_dp, 0.8_dp, kind == 'dynamic'))
+    call default_real(store, section, 'damping', 0.0_dp)
     call default_logical(store, section, 'mass_scaling', kind /= 'dynamic')
     call default_logical(store, section, 'reset_displacement', kind == 'geostatic')
   end subroutine derive_stage

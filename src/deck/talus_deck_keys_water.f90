@@ -120,8 +120,8 @@ contains
              'Out-of-balance force over applied force that counts as equilibrium.', still)
     call key(t, 'steps_max', 'integer', '', '100000', '[1, 2000000000]', &
              'Most steps of one relaxation.', still)
-    call key(t, 'damping', 'real', '', '~0 if dynamic, else 0.8', '[0, 0.99]', &
-             'Local damping, as a fraction of the out-of-balance force.')
+    call key(t, 'damping', 'real', '', '0', '[0, 0.99]', &
+             'Local damping, a fraction of the out-of-balance force; relaxations are damped critically as well.')
     call key(t, 'mass_scaling', 'logical', '', '~.false. if dynamic, else .true.', '', &
              'Scale the masses so that relaxation takes few steps.')
     call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &

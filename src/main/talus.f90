@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> The program `talus`: see `talus help`. Exit codes: 0 done, 1 files, 2 bad input, 3 numerics.
 program talus
+  use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use talus_command, only: command_t, command_read, command_help
-  use talus_status, only: status_t, status_failed, status_io, status_deck, status_numeric
+  use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t
   use talus_deck_messages, only: messages_t, messages_text
   use talus_deck, only: deck_load
@@ -14,6 +15,13 @@ program talus
   use talus_version, only: version, git_hash
   use omp_lib, only: omp_set_num_threads
   implicit none
+  interface
+    !> Exit of the C library: `stop` would print its code, and `error stop` a backtrace too.
+    subroutine leave(code) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: code
+    end subroutine leave
+  end interface
   type(command_t) :: command
   type(status_t) :: status
   type(deck_t) :: deck
@@ -44,14 +52,8 @@ program talus
     end select
   end if
   if (status_failed(status)) write (error_unit, '(2a)') 'talus: ', status%message
-  select case (status%code)
-  case (status_io)
-    error stop 1
-  case (status_deck)
-    error stop 2
-  case (status_numeric)
-    error stop 3
-  end select
+  flush (error_unit)
+  call leave(int(status%code, c_int))
 
 contains
 

@@ -111,7 +111,7 @@ contains
       estimate = 0.0_dp
       if (stage%solve /= 'seepage') then
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
-        session%motion%damping = stage%damping
+        session%motion%local = stage%damping
         call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
                             stage%mass_scaling, 1.0_dp, session%motion, session%work)
         write (output_unit, '(2a)') '  stable soil step        ', text_of(session%motion%step, 4)// &

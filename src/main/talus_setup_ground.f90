@@ -58,10 +58,11 @@ contains
     end do
   end subroutine setup_ground
 
-  !> The same ground without damage and softening, in which gravity is first switched on: its
-  !> history before the run is not a failure.
-  function ground_intact(ground) result(intact)
+  !> The same ground without damage and softening, and elastic unless `plastic`: in it gravity is
+  !> first switched on, since the history of the ground before the run is not a failure.
+  function ground_intact(ground, plastic) result(intact)
     type(ground_t), intent(in) :: ground
+    logical, intent(in) :: plastic
     type(ground_t) :: intact
     type(status_t) :: status
     integer :: i
@@ -69,6 +70,7 @@ contains
     intact = ground
     do i = 1, size(intact%law)
       intact%law(i)%damage%driver = driver_none
+      if (.not. plastic) intact%law(i)%plasticity = plasticity_none
       intact%law(i)%strength%softening = softening_none
       call soil_law_prepare(intact%law(i), status)
     end do

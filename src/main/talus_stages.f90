@@ -14,7 +14,7 @@ module talus_stages
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
   use talus_relax, only: relax_t, relax, motion_prepare, largest_motion, relax_balanced, &
-    relax_broken, relax_exhausted
+    relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
   use talus_soil_law, only: soil_inverted
@@ -74,7 +74,8 @@ contains
         state%water%stored_start = audit_stored_water(disc, state)
       end if
       if (stage%solve /= 'seepage') then
-        session%motion%damping = stage%damping
+        session%motion%local = stage%damping
+        session%motion%viscous = 0.0_dp
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
         call take_load(session)
         state%v = merge(session%conditions%given, 0.0_dp, session%conditions%held)
@@ -105,22 +106,37 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
-    type(ground_t) :: intact
+
+    ! Elastic first: switching gravity on in a plastic soil would leave the marks of its jolt.
+    call settle(session, ground_intact(session%ground, .false.), stage, status)
+    call settle(session, ground_intact(session%ground, .true.), stage, status)
+    if (status_failed(status)) return
+    ! The pore pressure was given for the settled soil.
+    if (session%ground%wet) call initial_water(session%disc, session%ground, &
+                                               session%state%pressure, session%state)
+    if (stage%reset_displacement) call reset(session%state)
+    call record_snapshot(session, status)
+  end subroutine run_geostatic
+
+  !> Relax to equilibrium in a simplified ground.
+  subroutine settle(session, ground, stage, status)
+    type(session_t), intent(inout) :: session
+    type(ground_t), intent(in) :: ground
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
     type(relax_t) :: outcome
     integer :: done
 
-    intact = ground_intact(session%ground)
     done = 0
-    do
-      call relax(session%disc, intact, session%conditions, session%motion, stage%tolerance, &
+    do while (.not. status_failed(status))
+      call relax(session%disc, ground, session%conditions, session%motion, stage%tolerance, &
                  min(relax_chunk, stage%steps_max - done), huge(1.0_dp), session%state, &
                  session%work, outcome)
       done = done + outcome%steps
       if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
-      if (status_failed(status)) return
       call record_line(session, real(done, dp)/real(stage%steps_max, dp), status)
-      if (outcome%outcome == relax_balanced) exit
-      if (done < stage%steps_max) cycle
+      if (outcome%outcome == relax_balanced) return
+      if (done < stage%steps_max .or. status_failed(status)) cycle
       session%last_good = session%state
       call record_last_good(session)
       call status_set(status, status_numeric, 'stage '//stage%name//': no equilibrium within '// &
@@ -128,14 +144,8 @@ contains
         text_of(outcome%ratio)//' of the load, allowed '//text_of(stage%tolerance)// &
         ', largest displacement '//text_of(largest_motion(session%disc%n, session%state%u, &
         session%state%u_zero))//' m; the slope does not stand, or steps_max is too small')
-      return
     end do
-    ! The pore pressure was given for the settled soil.
-    if (session%ground%wet) call initial_water(session%disc, session%ground, &
-                                               session%state%pressure, session%state)
-    if (stage%reset_displacement) call reset(session%state)
-    call record_snapshot(session, status)
-  end subroutine run_geostatic
+  end subroutine settle
 
   !> Count displacement, strain and the history of the soil from here.
   subroutine reset(state)
@@ -180,7 +190,7 @@ contains
         session%trigger_time = before%time
         ! The water of the failing step stays: the slide starts out of balance.
         session%state = before
-        call move_water(session, stage, step)
+        if (stage%solve /= 'soil') call move_water(session, stage, step)
         session%state%time = before%time + step
         call progress_say(session%progress, 'equilibrium lost after '// &
           text_of(session%trigger_time/3600.0_dp)//' h')

@@ -64,27 +64,38 @@ contains
   end subroutine motion_position
 
   !> Velocities at the next half step. Local damping takes a fraction of the out-of-balance force
-  !> against the velocity (Cundall 1987). `mobility` is one over mass, and 0 where motion is held.
-  subroutine motion_velocity(step, damping, mobility, force, v, acceleration, damped)
+  !> against the velocity (Cundall 1987); viscous damping is proportional to momentum, at the mean
+  !> velocity of the step. `mobility` is one over mass, and 0 where motion is held.
+  subroutine motion_velocity(step, local, viscous, mobility, force, v, acceleration, damped)
     real(dp), intent(in) :: step    !! time step [s]
-    real(dp), intent(in) :: damping !! fraction, 0..1
-    real(dp), contiguous, intent(in) :: mobility(:,:)       !! [1/(kg/m)], (2,n)
-    real(dp), contiguous, intent(in) :: force(:,:)          !! out-of-balance force [N/m], (2,n)
-    real(dp), contiguous, intent(inout) :: v(:,:)           !! velocity [m/s], (2,n)
+    real(dp), intent(in) :: local   !! local damping, fraction 0..1
+    real(dp), intent(in) :: viscous !! viscous damping [1/s]
+    real(dp), contiguous, intent(in) :: mobility(:,:)        !! [m/kg], (2,n)
+    real(dp), contiguous, intent(in) :: force(:,:)           !! out-of-balance force [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: v(:,:)            !! velocity [m/s], (2,n)
     real(dp), contiguous, intent(inout) :: acceleration(:,:) !! with damping [m/s2], (2,n)
-    real(dp), contiguous, intent(inout) :: damped(:)        !! energy damped so far [J/m], (n)
-    real(dp) :: f, next
+    real(dp), contiguous, intent(inout) :: damped(:)         !! energy damped so far [J/m], (n)
+    real(dp) :: f, next, middle
     integer :: i, j
+    logical :: damps
 
+    damps = local > 0.0_dp .or. viscous > 0.0_dp
     !$omp do schedule(static)
     do i = 1, size(damped)
       do j = 1, 2
+        if (.not. mobility(j, i) > 0.0_dp) then
+          acceleration(j, i) = 0.0_dp
+          cycle
+        end if
         f = force(j, i)
-        if (damping > 0.0_dp .and. abs(v(j, i)) > 0.0_dp) f = f - sign(damping*abs(f), v(j, i))
-        acceleration(j, i) = f*mobility(j, i)
-        next = v(j, i) + step*acceleration(j, i)
-        if (damping > 0.0_dp .and. mobility(j, i) > 0.0_dp) &
-          damped(i) = damped(i) + 0.5_dp*step*(force(j, i) - f)*(v(j, i) + next)
+        if (local > 0.0_dp .and. abs(v(j, i)) > 0.0_dp) f = f - sign(local*abs(f), v(j, i))
+        next = ((1.0_dp - 0.5_dp*step*viscous)*v(j, i) + step*f*mobility(j, i)) &
+               /(1.0_dp + 0.5_dp*step*viscous)
+        acceleration(j, i) = (next - v(j, i))/step
+        if (damps) then
+          middle = 0.5_dp*(v(j, i) + next)
+          damped(i) = damped(i) + step*middle*(force(j, i) - f + viscous*middle/mobility(j, i))
+        end if
         v(j, i) = next
       end do
     end do

@@ -64,7 +64,8 @@ contains
     do i = 1, disc%n
       motion%mobility(:, i) = merge(0.0_dp, 1.0_dp/mass(i), conditions%held(:, i))
     end do
-    motion%step = safety*time_step_stable(disc, ground, state, motion, work)
+    ! Local damping adds up to its fraction to a force that opposes the motion.
+    motion%step = safety*time_step_stable(disc, ground, state, motion, work)/sqrt(1.0_dp + motion%local)
   end subroutine motion_prepare
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
@@ -74,18 +75,19 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(conditions_t), intent(in) :: conditions
-    type(motion_t), intent(in) :: motion
+    type(motion_t), intent(inout) :: motion
     real(dp), intent(in) :: tolerance !! [-]
     integer, intent(in) :: steps_max
     real(dp), intent(in) :: moved_max !! displacement that counts as failure [m]; huge() for none
     type(state_t), intent(inout) :: state
     type(work_t), intent(inout) :: work
     type(relax_t), intent(out) :: outcome
-    real(dp), allocatable :: u_start(:,:)
+    real(dp), allocatable :: u_start(:,:), force(:,:)
 
     u_start = state%u
     outcome%outcome = relax_exhausted
     do while (outcome%steps < steps_max)
+      if (modulo(outcome%steps + 1, look_every) == 0) force = work%force
       call soil_step(disc, ground, motion, state, work, outcome%failed)
       outcome%steps = outcome%steps + 1
       if (outcome%failed > 0) then
@@ -94,6 +96,7 @@ contains
       end if
       if (conditions%driven) call audit_driven(motion, work%force, state)
       if (modulo(outcome%steps, look_every) /= 0) cycle
+      motion%viscous = critical_damping(disc%n, motion, state, work, force)
       outcome%ratio = unbalanced_ratio(disc%n, motion, state, work)
       outcome%moved = largest_motion(disc%n, state%u, u_start)
       if (outcome%ratio <= tolerance) then
@@ -105,6 +108,29 @@ contains
       end if
     end do
   end subroutine relax
+
+  !> Critical damping of the motion as it is now [1/s]: twice its frequency, by the quotient of
+  !> Rayleigh of the last step (Underwood 1983). `before` is the force one step ago.
+  real(dp) function critical_damping(n, motion, state, work, before) result(viscous)
+    integer, intent(in) :: n
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(in) :: state
+    type(work_t), intent(in) :: work
+    real(dp), intent(in) :: before(:,:) !! [N/m], (2,n)
+    real(dp), allocatable :: moved(:,:), momentum(:,:)
+    real(dp) :: inertia, stiffness
+
+    ! The velocity that led from the force before to the force now.
+    moved = merge(state%v - motion%step*state%acceleration, 0.0_dp, motion%mobility > 0.0_dp)
+    momentum = moved
+    where (motion%mobility > 0.0_dp) momentum = moved/motion%mobility
+    inertia = sum_products(2*n, moved, momentum)
+    stiffness = sum_products(2*n, moved, before) - sum_products(2*n, moved, work%force)
+    viscous = 0.0_dp
+    if (stiffness > 0.0_dp .and. inertia > 0.0_dp) &
+      viscous = 2.0_dp*sqrt(stiffness/(motion%step*inertia))
+    viscous = min(viscous, 1.0_dp/motion%step)
+  end function critical_damping
 
   !> Out-of-balance force on the nodes that can move over the load or, when larger, the reactions.
   real(dp) function unbalanced_ratio(n, motion, state, work) result(ratio)

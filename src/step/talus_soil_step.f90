@@ -35,7 +35,8 @@ module talus_soil_step
   !> How the nodes move in a stage.
   type :: motion_t
     real(dp) :: step = 0.0_dp              !! time step [s]
-    real(dp) :: damping = 0.0_dp           !! local damping, 0..1
+    real(dp) :: local = 0.0_dp             !! local damping, 0..1
+    real(dp) :: viscous = 0.0_dp           !! viscous damping [1/s]
     logical :: coupled = .false.           !! pore pressure follows the soil
     real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
   end type motion_t
@@ -66,8 +67,8 @@ contains
     !$omp parallel default(none) shared(disc, ground, motion, state, work, failed)
     call motion_position(motion%step, state%v, state%u)
     call forces(disc, ground, motion%coupled, state, work, failed)
-    call motion_velocity(motion%step, motion%damping, motion%mobility, work%force, state%v, &
-                         state%acceleration, state%damped)
+    call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
+                         state%v, state%acceleration, state%damped)
     !$omp end parallel
     state%steps = state%steps + 1_i8
   end subroutine soil_step

@@ -16,6 +16,8 @@ def chosen(result, arguments):
     if arguments.times:
         return [result.snapshot(time=time) for time in arguments.times]
     numbered = result.numbered()
+    # Of snapshots at one time (the end of a stage, the start of the next) the last.
+    numbered = [s for s, after in zip(numbered, [*numbered[1:], None]) if not after or after.time > s.time]
     pick = np.unique(np.linspace(0, len(numbered) - 1, arguments.count).round().astype(int))
     return [numbered[i] for i in pick]
 

@@ -53,7 +53,8 @@ class FieldScale:
             low = MaxNLocator(4).tick_values(self.norm.vmin, 0.0)
             high = MaxNLocator(3).tick_values(0.0, self.norm.vmax)
             ticks = np.union1d(low[low <= 0.0], high[high >= 0.0])
-            bar.set_ticks(ticks[(ticks >= self.norm.vmin) & (ticks <= self.norm.vmax)])
+            ticks = ticks[(ticks >= self.norm.vmin) & (ticks <= self.norm.vmax)]
+            bar.set_ticks(ticks, labels=[f"{tick:.4g}".replace("-", "\u2212") for tick in ticks])
             bar.ax.minorticks_off()
         return bar
 

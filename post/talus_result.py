@@ -37,6 +37,8 @@ class Result:
 
     def __init__(self, path):
         self.path = Path(path)
+        if not self.path.is_file():
+            raise ResultError(f"{self.path}: no such file")
         try:
             self._file = h5py.File(self.path, "r", locking=False)
             mesh = self._file["mesh"]

@@ -20,6 +20,7 @@ import plot_all  # noqa: E402
 import plot_field  # noqa: E402
 import plot_profiles  # noqa: E402
 import plot_sequence  # noqa: E402
+from plot_water_balance import balance_of  # noqa: E402
 from talus_result import CellShapes, Result, ResultError, along_vertical  # noqa: E402
 from talus_style import display_units, seconds, time_text, use_style  # noqa: E402
 
@@ -195,6 +196,19 @@ class Reading(unittest.TestCase):
         self.assertEqual(seconds("1.5h"), 5400.0)
         self.assertEqual(seconds("90min"), 5400.0)
         self.assertEqual(seconds("12s"), seconds("12"))
+
+    def test_water_counters_add_up_over_stages(self):
+        history = {
+            "stage": np.repeat(["gravity", "wet", "dry", "wet again"], 3),
+            "water_in": np.array([0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 2, 4.0]),
+            "water_out": np.array([0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1.0]),
+            "water_stored": np.array([9, 9, 8, 7, 8, 8, 8, 8, 8, 8, 10, 11.0]),
+        }
+        rows, totals = balance_of(history)
+        self.assertEqual(list(rows), [3, 4, 5, 9, 10, 11])
+        self.assertEqual(list(totals["water_in"]), [0, 1, 2, 2, 4, 6])
+        difference = totals["water_in"] - totals["water_out"] - totals["water_stored"]
+        self.assertEqual(list(difference), [0.0] * 6)
 
     def test_units_for_readers(self):
         self.assertEqual(display_units("Pa", 25e3), (1e-3, "kPa"))

@@ -54,7 +54,7 @@ contains
         call run_dynamic(session, stage, status)
       end select
       call timer_stop(session%timer, stage%kind)
-      if (.not. status_failed(status) .and. stage%reset_displacement) call reset(session%state)
+      if (.not. status_failed(status) .and. stage%reset_displacement) call reset(session)
       call progress_end(session%progress)
     end associate
   end subroutine stage_run
@@ -78,7 +78,9 @@ contains
         session%motion%viscous = 0.0_dp
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
         call take_load(session)
-        state%v = merge(session%conditions%given, 0.0_dp, session%conditions%held)
+        state%v = 0.0_dp
+        if (stage%kind == 'dynamic') state%v = merge(session%conditions%given, 0.0_dp, &
+                                                     session%conditions%held)
         state%acceleration = 0.0_dp
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
@@ -114,7 +116,7 @@ contains
     ! The pore pressure was given for the settled soil.
     if (session%ground%wet) call initial_water(session%disc, session%ground, &
                                                session%state%pressure, session%state)
-    if (stage%reset_displacement) call reset(session%state)
+    if (stage%reset_displacement) call reset(session)
     call record_snapshot(session, status)
   end subroutine run_geostatic
 
@@ -130,8 +132,8 @@ contains
     done = 0
     do while (.not. status_failed(status))
       call relax(session%disc, ground, session%conditions, session%motion, stage%tolerance, &
-                 min(relax_chunk, stage%steps_max - done), huge(1.0_dp), session%state, &
-                 session%work, outcome)
+                 min(relax_chunk, stage%steps_max - done), huge(1.0_dp), 0.0_dp, &
+                 session%state, session%work, outcome)
       done = done + outcome%steps
       if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
       call record_line(session, real(done, dp)/real(stage%steps_max, dp), status)
@@ -148,15 +150,16 @@ contains
   end subroutine settle
 
   !> Count displacement, strain and the history of the soil from here.
-  subroutine reset(state)
-    type(state_t), intent(inout) :: state
+  subroutine reset(session)
+    type(session_t), intent(inout) :: session
 
-    state%u_zero = state%u
-    state%v = 0.0_dp
-    if (allocated(state%strain)) state%strain = 0.0_dp
-    if (allocated(state%history)) state%history = 0.0_dp
-    if (allocated(state%f_drive)) state%f_drive = spread([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], 2, &
-                                                         size(state%u, 2))
+    session%greatest_displacement = 0.0_dp
+    associate (state => session%state)
+      state%u_zero = state%u
+      state%v = 0.0_dp
+      if (allocated(state%strain)) state%strain = 0.0_dp
+      if (allocated(state%history)) state%history = 0.0_dp
+    end associate
   end subroutine reset
 
   !> Steps of the storm clock: the water moves, then the soil finds its equilibrium. When it finds
@@ -225,7 +228,7 @@ contains
     moved_max = huge(1.0_dp)
     if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
-               stage%steps_max, moved_max, session%state, session%work, outcome)
+               stage%steps_max, moved_max, step, session%state, session%work, outcome)
     call timer_stop(session%timer, 'soil')
     stands = outcome%outcome == relax_balanced
     if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
@@ -264,8 +267,13 @@ contains
     call record_line(session, 0.0_dp, status)
     call record_snapshot(session, status)
     session%last_good = session%state
+    ! The forces that driven nodes feel at the start, for the account of their work.
+    failed = 0
+    if (session%conditions%driven) call soil_force(session%disc, session%ground, &
+      session%motion%coupled, session%state, session%work, failed)
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
       call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
       call timer_stop(session%timer, 'soil')
       if (failed > 0) then

@@ -108,14 +108,17 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
+    real(dp), allocatable :: pressure(:)
 
     ! Elastic first: switching gravity on in a plastic soil would leave the marks of its jolt.
     call settle(session, ground_intact(session%ground, .false.), stage, status)
     call settle(session, ground_intact(session%ground, .true.), stage, status)
     if (status_failed(status)) return
     ! The pore pressure was given for the settled soil.
-    if (session%ground%wet) call initial_water(session%disc, session%ground, &
-                                               session%state%pressure, session%state)
+    if (session%ground%wet) then
+      pressure = session%state%pressure
+      call initial_water(session%disc, session%ground, pressure, session%state)
+    end if
     if (stage%reset_displacement) call reset(session)
     call record_snapshot(session, status)
   end subroutine run_geostatic

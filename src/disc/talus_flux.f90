@@ -16,6 +16,10 @@ module talus_flux
   !> A rest below this fraction of |T N| is round-off: the face is orthogonal.
   real(dp), parameter :: orthogonal = 1.0e-10_dp
 
+  !> Least cosine between T N and the edge that a counts with: very anisotropic soil on an irregular
+  !> grid can turn T N away from the edge, and a must stay positive.
+  real(dp), parameter :: least_cosine = 0.2_dp
+
   type :: flux_t
     real(dp), allocatable :: along(:)     !! a of each face [m/s]
     real(dp), allocatable :: share(:,:)   !! the two sides' part in the resistance of a face, (2,ne)
@@ -49,7 +53,8 @@ contains
       edge = x(:, dual%edge_node(2, e)) - x(:, dual%edge_node(1, e))
       do k = 1, 2
         tn(:, k) = tensor_times(conductivity(:, dual%edge_node(k, e)), dual%edge_normal(:, e))
-        a(k) = dot_product(tn(:, k), tn(:, k))/dot_product(tn(:, k), edge)
+        a(k) = dot_product(tn(:, k), tn(:, k))/max(dot_product(tn(:, k), edge), &
+                                                   least_cosine*norm2(tn(:, k))*norm2(edge))
       end do
       ! The two halves of an edge are resistances in series.
       flux%along(e) = 2.0_dp*a(1)*a(2)/(a(1) + a(2))

@@ -155,9 +155,11 @@ contains
       real(dp), intent(in) :: values(:), alone
       real(dp), allocatable :: filled(:)
 
-      filled = values
-      if (size(values) > 0) return
-      allocate (filled(size(soil%softening_table_strain)), source=alone)
+      if (size(values) > 0) then
+        filled = values
+      else
+        filled = spread(alone, 1, size(soil%softening_table_strain))
+      end if
     end function column
   end subroutine fill_strength
 

@@ -119,18 +119,19 @@ contains
   end subroutine audit_driven
 
   !> Relative error of the energy balance since `start`: what is missing over the largest energy
-  !> that changed hands.
+  !> that changed hands, or over a millionth of the largest held where next to nothing moves.
   pure real(dp) function audit_energy_error(start, now) result(error)
     type(energies_t), intent(in) :: start, now
-    real(dp) :: change(7), work
+    real(dp), parameter :: held_share = 1.0e-6_dp
+    real(dp) :: change(7), work, scale
 
     change = [now%kinetic - start%kinetic, now%strain - start%strain, now%plastic - start%plastic, &
               now%damage - start%damage, now%water - start%water, &
               now%stabilisation - start%stabilisation, now%damping - start%damping]
     work = now%external - start%external
+    scale = max(abs(work), maxval(abs(change)), held_share*max(now%strain, abs(now%external)))
     error = 0.0_dp
-    if (maxval(abs([change, work])) > 0.0_dp) &
-      error = (sum(change) - work)/max(abs(work), maxval(abs(change)))
+    if (scale > 0.0_dp) error = (sum(change) - work)/scale
   end function audit_energy_error
 
   !> Water in the soil [m3/m].

@@ -66,6 +66,8 @@ contains
     end do
     ! Local damping adds up to its fraction to a force that opposes the motion.
     motion%step = safety*time_step_stable(disc, ground, state, motion, work)/sqrt(1.0_dp + motion%local)
+    ! Without a node that can move, any step will do.
+    if (.not. motion%step > 0.0_dp) motion%step = 1.0_dp
   end subroutine motion_prepare
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
@@ -95,8 +97,8 @@ contains
         return
       end if
       if (conditions%driven) call audit_driven(motion, work%force, state)
-      if (modulo(outcome%steps, look_every) /= 0) cycle
-      motion%viscous = critical_damping(disc%n, motion, state, work, force)
+      if (modulo(outcome%steps, look_every) /= 0 .and. outcome%steps < steps_max) cycle
+      if (allocated(force)) motion%viscous = critical_damping(disc%n, motion, state, work, force)
       outcome%ratio = unbalanced_ratio(disc%n, motion, state, work)
       outcome%moved = largest_motion(disc%n, state%u, u_start)
       if (outcome%ratio <= tolerance) then

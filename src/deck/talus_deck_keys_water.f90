@@ -77,9 +77,9 @@ contains
     call key(t, 'displacement', 'string', '', 'free', 'free|fixed|roller_x|roller_y', &
              'Held displacement: roller_x holds x, roller_y holds y, fixed holds both.')
     call key(t, 'velocity_x', 'real', 'm/s', '', '[-1e3, 1e3]', &
-             'Prescribed velocity along x; absent: none.')
+             'Prescribed velocity along x, held still in a geostatic stage; absent: none.')
     call key(t, 'velocity_y', 'real', 'm/s', '', '[-1e3, 1e3]', &
-             'Prescribed velocity along y; absent: none.')
+             'Prescribed velocity along y, held still in a geostatic stage; absent: none.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
     call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
         'Traction along y, upward positive.')

@@ -102,8 +102,8 @@ contains
     state%u_load = state%u
   end subroutine audit_load
 
-  !> Add the work of the forces that drive nodes at a given velocity, by the trapezoidal rule over
-  !> the steps before and after now.
+  !> Add the work of the forces that drive nodes over half a step: call it before and after each
+  !> soil step, so that their work follows the trapezoidal rule as all other works do.
   subroutine audit_driven(motion, force, state)
     type(motion_t), intent(in) :: motion
     real(dp), intent(in) :: force(:,:) !! out-of-balance force [N/m], (2,n)
@@ -113,7 +113,7 @@ contains
     do i = 1, size(force, 2)
       do j = 1, 2
         if (.not. motion%mobility(j, i) > 0.0_dp .and. abs(state%v(j, i)) > 0.0_dp) &
-          state%external = state%external - motion%step*force(j, i)*state%v(j, i)
+          state%external = state%external - 0.5_dp*motion%step*force(j, i)*state%v(j, i)
       end do
     end do
   end subroutine audit_driven

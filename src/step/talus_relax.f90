@@ -2,11 +2,12 @@
 !> Equilibrium of the soil by damped motion with scaled masses (src/THEORY.md section 5, two clocks).
 module talus_relax
   use talus_kinds, only: dp
+  use talus_const, only: pi
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_conditions, only: conditions_t
-  use talus_soil_step, only: work_t, motion_t, soil_step
+  use talus_soil_step, only: work_t, motion_t, soil_step, soil_force
   use talus_time_step, only: time_step_stable, water_bulk_modulus
   use talus_sum, only: sum_products
   use talus_audit, only: audit_driven
@@ -71,9 +72,10 @@ contains
   end subroutine motion_prepare
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
-  !> moved by more than `moved_max`, or `steps_max` steps were taken.
-  subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, state, work, &
-                   outcome)
+  !> moved by more than `moved_max`, or `steps_max` steps were taken. Driven nodes first travel as
+  !> far as their velocity takes them in `travel` seconds, and are then held.
+  subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, travel, state, &
+                   work, outcome)
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(conditions_t), intent(in) :: conditions
@@ -81,27 +83,37 @@ contains
     real(dp), intent(in) :: tolerance !! [-]
     integer, intent(in) :: steps_max
     real(dp), intent(in) :: moved_max !! displacement that counts as failure [m]; huge() for none
+    real(dp), intent(in) :: travel    !! time that driven nodes move on [s]; 0 holds them
     type(state_t), intent(inout) :: state
     type(work_t), intent(inout) :: work
     type(relax_t), intent(out) :: outcome
     real(dp), allocatable :: u_start(:,:), force(:,:)
+    integer :: ramp
+    logical :: travels
 
     u_start = state%u
+    ramp = 0
+    if (conditions%driven .and. abs(travel) > 0.0_dp) ramp = min(ramp_steps(disc), steps_max)
+    if (ramp > 0) call soil_force(disc, ground, motion%coupled, state, work, outcome%failed)
     outcome%outcome = relax_exhausted
     do while (outcome%steps < steps_max)
       if (modulo(outcome%steps + 1, look_every) == 0) force = work%force
+      travels = outcome%steps < ramp
+      if (travels .or. outcome%steps == ramp) call drive_nodes(conditions, &
+        travel*ramp_share(outcome%steps + 1, ramp)/motion%step, state)
+      if (travels) call audit_driven(motion, work%force, state)
       call soil_step(disc, ground, motion, state, work, outcome%failed)
       outcome%steps = outcome%steps + 1
       if (outcome%failed > 0) then
         outcome%outcome = relax_broken
         return
       end if
-      if (conditions%driven) call audit_driven(motion, work%force, state)
+      if (travels) call audit_driven(motion, work%force, state)
       if (modulo(outcome%steps, look_every) /= 0 .and. outcome%steps < steps_max) cycle
       if (allocated(force)) motion%viscous = critical_damping(disc%n, motion, state, work, force)
       outcome%ratio = unbalanced_ratio(disc%n, motion, state, work)
       outcome%moved = largest_motion(disc%n, state%u, u_start)
-      if (outcome%ratio <= tolerance) then
+      if (outcome%ratio <= tolerance .and. outcome%steps > ramp) then
         outcome%outcome = relax_balanced
         return
       else if (outcome%moved > moved_max) then
@@ -110,6 +122,36 @@ contains
       end if
     end do
   end subroutine relax
+
+  !> Steps over which driven nodes travel: a wave, which passes about one spacing a step, crosses
+  !> the body twice, so that their neighbours are not crushed.
+  pure integer function ramp_steps(disc)
+    type(disc_t), intent(in) :: disc
+    real(dp) :: extent(2)
+
+    extent = maxval(disc%mesh%x, dim=2) - minval(disc%mesh%x, dim=2)
+    ramp_steps = 1 + ceiling(2.0_dp*maxval(extent)/sqrt(sum(disc%dual%area)/real(disc%n, dp)))
+  end function ramp_steps
+
+  !> Share of the travel in one step of a ramp: smooth, adding up to one; 0 after it.
+  pure real(dp) function ramp_share(step, ramp) result(share)
+    integer, intent(in) :: step, ramp
+
+    share = 0.0_dp
+    if (step > ramp) return
+    share = 1.0_dp
+    if (ramp > 1) share = (1.0_dp - cos(2.0_dp*pi*(real(step, dp) - 0.5_dp)/real(ramp, dp))) &
+                          /real(ramp, dp)
+  end function ramp_share
+
+  !> Let driven nodes move at a multiple of their velocity, and held ones rest.
+  pure subroutine drive_nodes(conditions, multiple, state)
+    type(conditions_t), intent(in) :: conditions
+    real(dp), intent(in) :: multiple !! [-]
+    type(state_t), intent(inout) :: state
+
+    where (conditions%held) state%v = multiple*conditions%given
+  end subroutine drive_nodes
 
   !> Critical damping of the motion as it is now [1/s]: twice its frequency, by the quotient of
   !> Rayleigh of the last step (Underwood 1983). `before` is the force one step ago.

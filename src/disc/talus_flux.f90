@@ -24,7 +24,6 @@ module talus_flux
     real(dp), allocatable :: along(:)     !! a of each face [m/s]
     real(dp), allocatable :: share(:,:)   !! the two sides' part in the resistance of a face, (2,ne)
     real(dp), allocatable :: rest(:,:)    !! part of T N that is not along the edge [m2/s], (2,ne)
-    real(dp), allocatable :: around(:)    !! sum of a over the faces of each cell [m/s], (n)
     logical :: oblique = .false.          !! some face has a rest
   end type flux_t
 
@@ -43,12 +42,10 @@ contains
     n_edge = size(dual%edge_node, 2)
     if (.not. allocated(flux%along)) then
       allocate (flux%along(n_edge), flux%share(2, n_edge), flux%rest(2, n_edge))
-      allocate (flux%around(size(x, 2)))
     end if
     oblique = .false.
-    !$omp parallel default(none) shared(flux, x, dual, conductivity, n_edge) &
-    !$omp private(e, k, tn, edge, a, middle) reduction(.or.:oblique)
-    !$omp do schedule(static)
+    !$omp parallel do default(none) shared(flux, x, dual, conductivity, n_edge) &
+    !$omp private(e, k, tn, edge, a, middle) reduction(.or.:oblique) schedule(static)
     do e = 1, n_edge
       edge = x(:, dual%edge_node(2, e)) - x(:, dual%edge_node(1, e))
       do k = 1, 2
@@ -67,16 +64,7 @@ contains
         flux%rest(:, e) = 0.0_dp
       end if
     end do
-    !$omp end do
-    !$omp do schedule(static)
-    do e = 1, size(x, 2)
-      flux%around(e) = 0.0_dp
-      do k = dual%node_offset(e), dual%node_offset(e+1) - 1
-        flux%around(e) = flux%around(e) + flux%along(dual%node_edge(k))
-      end do
-    end do
-    !$omp end do
-    !$omp end parallel
+    !$omp end parallel do
     flux%oblique = oblique
   end subroutine flux_build
 

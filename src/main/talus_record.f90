@@ -92,7 +92,8 @@ contains
         call add('energy_strain', 'J/m', energies%strain)
         if (allocated(state%history)) then
           call add('energy_plastic', 'J/m', energies%plastic)
-          call add('energy_damage', 'J/m', energies%damage)
+          if (any(session%ground%law%damage%driver /= 0)) &
+            call add('energy_damage', 'J/m', energies%damage)
         end if
         if (allocated(state%water_work)) call add('energy_water', 'J/m', energies%water)
         if (allocated(state%stabilising)) call add('energy_stabilisation', 'J/m', &

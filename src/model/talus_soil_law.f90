@@ -31,11 +31,12 @@ module talus_soil_law
   !> Entries of the history of a point besides its stress and strain. Works are per volume of
   !! the reference configuration, so that their sum over the nodes is sum(work*reference area).
   integer, parameter, public :: history_eqps = 1         !! equivalent plastic strain [-]
-  integer, parameter, public :: history_kappa = 2        !! largest equivalent strain [-]
-  integer, parameter, public :: history_damage = 3       !! D [-]
-  integer, parameter, public :: history_plastic_work = 4 !! [J/m3]
+  integer, parameter, public :: history_plastic_work = 2 !! [J/m3]
+  integer, parameter, public :: history_kappa = 3        !! largest equivalent strain [-]
+  integer, parameter, public :: history_damage = 4       !! D [-]
   integer, parameter, public :: history_damage_work = 5  !! [J/m3]
-  integer, parameter, public :: history_size = 5
+  !> All of them, and those that soil without damage needs.
+  integer, parameter, public :: history_size = 5, history_size_plastic = 2
 
   !> Outcome of soil_update.
   integer, parameter, public :: soil_ok = 0, soil_inverted = 1, soil_not_finite = 2

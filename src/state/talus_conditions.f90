@@ -90,7 +90,8 @@ contains
     paint%value = 0.0_dp
   end subroutine inlets_start
 
-  !> Lay a water condition over the nodes of a set; it replaces what was there.
+  !> Lay a water condition over the nodes of a set; it replaces what was there. Inside the body only
+  !> a head makes sense: water enters and leaves through the boundary.
   pure subroutine inlets_paint(paint, set, number, kind, value, rain)
     type(inlet_paint_t), intent(inout) :: paint
     type(boundary_set_t), intent(in) :: set
@@ -100,11 +101,15 @@ contains
     integer, intent(in) :: rain    !! number of its rain, 0 for none
     integer :: i
 
-    paint%kind(set%node) = kind
-    paint%value(set%node) = value
-    paint%rain(set%node) = rain
-    paint%set(set%node) = number
-    paint%place(set%node) = [(i, i=1, size(set%node))]
+    do i = 1, size(set%node)
+      if (any(kind == [inlet_flux, inlet_rain, inlet_seepage]) .and. &
+          set%half_offset(i+1) == set%half_offset(i)) cycle
+      paint%kind(set%node(i)) = kind
+      paint%value(set%node(i)) = value
+      paint%rain(set%node(i)) = rain
+      paint%set(set%node(i)) = number
+      paint%place(set%node(i)) = i
+    end do
   end subroutine inlets_paint
 
   !> Inlets of all painted nodes.

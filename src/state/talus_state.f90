@@ -5,7 +5,8 @@ module talus_state
   use talus_kinds, only: dp, i8
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
-  use talus_soil_law, only: soil_needs_strain, history_size, stress_bishop
+  use talus_soil_law, only: soil_needs_strain, history_size, history_size_plastic, &
+    stress_bishop
   use talus_suction_strain, only: suction_strain_none
   implicit none
   private
@@ -32,7 +33,7 @@ module talus_state
     real(dp), allocatable :: f_drive(:,:)       !! smoothed, when it drives damage alone, (4,n)
     real(dp), allocatable :: stress(:,:)        !! undamaged, without pore pressure [Pa], (4,n)
     real(dp), allocatable :: strain(:,:)        !! total, where damage needs it, (4,n)
-    real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n); inelastic soil only
+    real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n), or (2,n) without damage
     real(dp), allocatable :: stiffness(:)       !! stiffness left over the elastic one, (n)
     real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
@@ -79,7 +80,8 @@ contains
     state%f(4, :) = 1.0_dp
     if (strained) allocate (state%strain(4, n), source=0.0_dp)
     if (strained .and. disc%damage_only) state%f_drive = state%f
-    if (inelastic) allocate (state%history(history_size, n), source=0.0_dp)
+    if (inelastic) allocate (state%history(merge(history_size, history_size_plastic, &
+      any(ground%law%damage%driver /= 0)), n), source=0.0_dp)
     if (disc%stabilised) then
       allocate (state%stabilising(n), state%stabilising_lost(n), source=0.0_dp)
       allocate (state%stiffness(n), state%stiffness_old(n), source=1.0_dp)

@@ -41,14 +41,17 @@ contains
     type(energies_t) :: energies
     real(dp), allocatable :: density(:)
     real(dp) :: damage
+    logical :: damages
     integer :: i
 
     allocate (density(disc%n))
-    !$omp parallel do default(none) shared(disc, ground, state, density) private(i, damage) &
+    damages = .false.
+    if (allocated(state%history)) damages = size(state%history, 1) >= history_damage_work
+    !$omp parallel do default(none) shared(disc, ground, state, density, damages) private(i, damage) &
     !$omp schedule(static)
     do i = 1, disc%n
       damage = 0.0_dp
-      if (allocated(state%history)) damage = state%history(history_damage, i)
+      if (damages) damage = state%history(history_damage, i)
       density(i) = soil_stored_energy(ground%law(disc%soil(i)), state%stress(:, i), damage) &
         *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i))
     end do
@@ -58,6 +61,8 @@ contains
     if (allocated(state%history)) then
       density = state%history(history_plastic_work, :)
       energies%plastic = sum_products(disc%n, density, disc%dual%area)
+    end if
+    if (damages) then
       density = state%history(history_damage_work, :)
       energies%damage = sum_products(disc%n, density, disc%dual%area)
     end if

@@ -29,11 +29,13 @@ contains
     type(scni_t), intent(in) :: scni
     real(dp), contiguous, intent(in) :: r(:,:)    !! smoothed Piola stress [Pa], (4,n)
     real(dp), contiguous, intent(in) :: load(:,:) !! weight and tractions [N/m], (2,n)
-    real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n)
+    real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n); (2,0) without
     real(dp), contiguous, intent(inout) :: force(:,:)    !! out-of-balance force [N/m], (2,n)
     real(dp) :: f1, f2
     integer :: i, k, l
+    logical :: stabilised
 
+    stabilised = size(stabilising, 2) > 0
     !$omp do schedule(static)
     do i = 1, size(load, 2)
       f1 = 0.0_dp
@@ -43,8 +45,9 @@ contains
         f1 = f1 + r(1, l)*scni%bt(1, k) + r(2, l)*scni%bt(2, k)
         f2 = f2 + r(3, l)*scni%bt(1, k) + r(4, l)*scni%bt(2, k)
       end do
-      force(1, i) = load(1, i) + stabilising(1, i) - f1
-      force(2, i) = load(2, i) + stabilising(2, i) - f2
+      force(1, i) = load(1, i) - f1
+      force(2, i) = load(2, i) - f2
+      if (stabilised) force(:, i) = force(:, i) + stabilising(:, i)
     end do
     !$omp end do
   end subroutine force_unbalanced

@@ -28,7 +28,7 @@ module talus_soil_step
     real(dp), allocatable :: h(:,:)           !! displacement gradient that the stress sees, (4,n)
     real(dp), allocatable :: drive(:,:)       !! the one that drives damage alone, (4,n) or (4,0)
     real(dp), allocatable :: q(:,:)           !! area times first Piola stress [N m/m], (4,n)
-    real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n)
+    real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n) or (2,0)
     real(dp), allocatable :: force(:,:)       !! out-of-balance force [N/m], (2,n)
   end type work_t
 
@@ -48,8 +48,9 @@ contains
     type(work_t), intent(out) :: work
     type(disc_t), intent(in) :: disc
 
-    allocate (work%y(4, disc%n), work%h(4, disc%n), work%q(4, disc%n), &
-              work%stabilising(2, disc%n), work%force(2, disc%n), source=0.0_dp)
+    allocate (work%y(4, disc%n), work%h(4, disc%n), work%q(4, disc%n), work%force(2, disc%n), &
+              source=0.0_dp)
+    allocate (work%stabilising(2, merge(disc%n, 0, disc%stabilised)), source=0.0_dp)
     allocate (work%drive(4, merge(disc%n, 0, disc%damage_only)), source=0.0_dp)
   end subroutine work_allocate
 

@@ -122,12 +122,12 @@ contains
 
     if (allocated(state%strain)) strain = state%strain(:, i)
     if (.not. allocated(state%strain)) strain = 0.0_dp
-    if (allocated(state%history)) history = state%history(:, i)
-    if (.not. allocated(state%history)) history = 0.0_dp
+    history = 0.0_dp
+    if (allocated(state%history)) history(:size(state%history, 1)) = state%history(:, i)
     call soil_update(law, state%f(:, i), f_new, suction_old, suction_new, effective, &
                      state%stress(:, i), strain, history, stress, left, ierr)
     if (allocated(state%strain)) state%strain(:, i) = strain
-    if (allocated(state%history)) state%history(:, i) = history
+    if (allocated(state%history)) state%history(:, i) = history(:size(state%history, 1))
     if (allocated(state%stiffness)) then
       state%stiffness_old(i) = state%stiffness(i)
       state%stiffness(i) = left

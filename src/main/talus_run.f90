@@ -57,6 +57,7 @@ contains
     type(status_t), intent(inout) :: status
     type(session_t) :: session
     type(status_t) :: closing
+    logical :: slides
     integer :: i
 
     call run_prepare(deck, session, status)
@@ -65,11 +66,14 @@ contains
     call timer_start(session%timer, 'stages')
     call open_results(session, overwrite, status)
     if (status_failed(status)) return
+    slides = .false.
     do i = 1, size(deck%stage)
+      ! Lost equilibrium goes on in the next dynamic stage.
+      if (slides .and. deck%stage(i)%kind /= 'dynamic') cycle
       call stage_run(session, i, status)
       if (status_failed(status)) exit
-      if (session%failed .and. deck%stage(i)%kind == 'storm' .and. &
-          deck%stage(i)%after_failure == 'stop') exit
+      slides = session%lost .and. deck%stage(i)%kind == 'storm'
+      if (slides .and. deck%stage(i)%after_failure == 'stop') exit
     end do
     call timer_stop(session%timer, 'stages')
     call history_store(session%history, session%result%path, closing)

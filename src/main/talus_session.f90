@@ -34,8 +34,9 @@ module talus_session
     real(dp) :: stage_start = 0.0_dp        !! time at which it began [s]
     type(energies_t) :: energies_start      !! at the start of the stage
     logical :: soil_moves = .false.         !! some stage solves the soil
-    logical :: failed = .false.             !! a storm ended in failure
-    real(dp) :: trigger_time = -1.0_dp      !! when equilibrium was lost [s]; -1: never
+    logical :: lost = .false.               !! the latest storm ended in failure
+    logical :: failed = .false.             !! some storm ended in failure
+    real(dp) :: trigger_time = -1.0_dp      !! when it was lost first [s]; -1: never
     real(dp) :: worst_water_error = 0.0_dp  !! over all storms
     real(dp) :: worst_energy_error = 0.0_dp !! over all dynamic stages
     real(dp) :: greatest_displacement = 0.0_dp !! since displacements were last reset [m]

@@ -7,7 +7,7 @@ module talus_stages
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
   use talus_ground, only: ground_t
-  use talus_state, only: state_t, water_balance_t
+  use talus_state, only: water_balance_t
   use talus_session, only: session_t
   use talus_setup_ground, only: ground_intact
   use talus_setup_conditions, only: setup_conditions
@@ -40,7 +40,7 @@ contains
 
     session%stage = number
     associate (stage => session%deck%stage(number))
-      if (stage%only_after_failure .and. .not. session%failed) return
+      if (stage%only_after_failure .and. .not. session%lost) return
       call progress_start(session%progress, stage%name)
       call stage_begin(session, stage, status)
       if (status_failed(status)) return
@@ -171,44 +171,51 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
-    type(state_t) :: before
-    real(dp) :: done, step, next_snapshot
-    logical :: stands
+    real(dp) :: done, step, next_snapshot, next_line, line_interval
+    logical :: stands, ended
 
     done = 0.0_dp
+    session%lost = .false.
     step = stage%storm_step
     next_snapshot = snapshot_interval(session, stage)
+    line_interval = 0.0_dp
+    if (deck_given(session%deck%output%history_interval)) &
+      line_interval = session%deck%output%history_interval
+    next_line = line_interval
     call record_line(session, 0.0_dp, status)
     call record_snapshot(session, status)
     do while (done < stage%duration*(1.0_dp - 1.0e-12_dp))
       step = min(step, stage%duration - done)
-      before = session%state
-      session%last_good = before
+      session%last_good = session%state
       call storm_step(session, stage, step, stands, status)
       if (status_failed(status)) return
       if (.not. stands) then
         if (step > stage%storm_step_minimum) then
-          session%state = before
+          session%state = session%last_good
           step = max(0.5_dp*step, stage%storm_step_minimum)
           cycle
         end if
+        session%lost = .true.
+        if (.not. session%failed) session%trigger_time = session%last_good%time
         session%failed = .true.
-        session%trigger_time = before%time
         ! The water of the failing step stays: the slide starts out of balance.
-        session%state = before
+        session%state = session%last_good
         if (stage%solve /= 'soil') call move_water(session, stage, step)
-        session%state%time = before%time + step
+        session%state%time = session%last_good%time + step
         call progress_say(session%progress, 'equilibrium lost after '// &
-          text_of(session%trigger_time/3600.0_dp)//' h')
+          text_of(session%last_good%time/3600.0_dp)//' h')
       end if
       done = done + step
-      call record_line(session, done/stage%duration, status)
-      if (session%failed .or. done >= next_snapshot*(1.0_dp - 1.0e-9_dp) .or. &
-          done >= stage%duration*(1.0_dp - 1.0e-9_dp)) then
-        call record_snapshot(session, status)
-        next_snapshot = done + snapshot_interval(session, stage)
+      ended = session%lost .or. is_due(done, stage%duration)
+      if (ended .or. is_due(done, next_line)) then
+        call record_line(session, done/stage%duration, status)
+        call put_off(next_line, done, line_interval)
       end if
-      if (session%failed .or. status_failed(status)) return
+      if (ended .or. is_due(done, next_snapshot)) then
+        call record_snapshot(session, status)
+        call put_off(next_snapshot, done, snapshot_interval(session, stage))
+      end if
+      if (session%lost .or. status_failed(status)) return
     end do
   end subroutine run_storm
 
@@ -233,8 +240,10 @@ contains
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
                stage%steps_max, moved_max, step, session%state, session%work, outcome)
     call timer_stop(session%timer, 'soil')
+    ! Soil that turns inside out while it looks for equilibrium has found none.
     stands = outcome%outcome == relax_balanced
-    if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
+    if (outcome%outcome == relax_broken .and. &
+        (outcome%failed - 1)/session%disc%n /= soil_inverted) call fail(session, outcome%failed, status)
   end subroutine storm_step
 
   !> Move the water for a time, with the soil at rest in its present shape.
@@ -295,14 +304,14 @@ contains
         since_water = 0.0_dp
         water_interval = water_pace(session, stage)
       end if
-      if (done < next_line .and. done < stage%duration) cycle
-      next_line = next_line + line_interval
+      if (done < min(next_line, next_snapshot, stage%duration)) cycle
+      call put_off(next_line, done, line_interval)
       call record_line(session, done/stage%duration, status)
       session%last_good = session%state
       speed = sqrt(maxval(sum(session%state%v**2, dim=1)))
       if (done >= next_snapshot .and. done < stage%duration) then
         call record_snapshot(session, status)
-        next_snapshot = next_snapshot + snapshot_interval(session, stage)
+        call put_off(next_snapshot, done, snapshot_interval(session, stage))
       end if
       if (speed < stage%rest_velocity .and. done > 10.0_dp*line_interval) exit
     end do
@@ -321,6 +330,24 @@ contains
     interval = seepage_step_limit(session%seepage, session%disc, session%ground, session%state)
     interval = max(session%motion%step, min(interval, 0.01_dp*stage%duration))
   end function water_pace
+
+  !> True when a time is reached, but for round-off.
+  pure logical function is_due(time, due)
+    real(dp), intent(in) :: time, due !! [s]
+
+    is_due = time >= due*(1.0_dp - 1.0e-9_dp)
+  end function is_due
+
+  !> Put off a regular event to its first time after `time`.
+  pure subroutine put_off(due, time, interval)
+    real(dp), intent(inout) :: due          !! [s]
+    real(dp), intent(in) :: time, interval  !! [s]
+
+    if (.not. is_due(time, due)) return
+    due = due + interval
+    if (interval > 0.0_dp .and. is_due(time, due)) &
+      due = due + interval*aint((time - due)/interval + 1.0_dp)
+  end subroutine put_off
 
   !> Time between two snapshots of a stage [s].
   pure real(dp) function snapshot_interval(session, stage) result(interval)

@@ -13,7 +13,7 @@ module talus_stages
   use talus_setup_conditions, only: setup_conditions
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
-  use talus_relax, only: relax_t, relax, motion_prepare, largest_motion, relax_balanced, &
+  use talus_relax, only: relax_t, relax, motion_prepare, motion_refresh, largest_motion, relax_balanced, &
     relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
@@ -29,6 +29,8 @@ module talus_stages
   integer, parameter :: relax_chunk = 500
   !> History lines of a dynamic stage when the deck does not say.
   integer, parameter :: dynamic_lines = 200
+  !> Real-time steps between two looks at the stable step.
+  integer(i8), parameter :: refresh_every = 250_i8
 
 contains
 
@@ -235,6 +237,10 @@ contains
     if (stage%solve == 'seepage') return
     call take_load(session)
     call timer_start(session%timer, 'soil')
+    ! Soil that the storm has filled with water is stiffer than before.
+    if (session%motion%coupled) call motion_prepare(session%disc, session%ground, &
+      session%conditions, session%state, stage%mass_scaling, stage%step_safety, session%motion, &
+      session%work)
     moved_max = huge(1.0_dp)
     if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
@@ -285,6 +291,8 @@ contains
       session%motion%coupled, session%state, session%work, failed)
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
+      if (modulo(session%state%steps, refresh_every) == 0_i8) call motion_refresh(session%disc, &
+        session%ground, session%state, session%motion, session%work)
       if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
       call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
       call timer_stop(session%timer, 'soil')

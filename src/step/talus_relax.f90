@@ -13,13 +13,16 @@ module talus_relax
   use talus_audit, only: audit_driven
   implicit none
   private
-  public :: relax_t, relax, motion_prepare, unbalanced_ratio, largest_motion
+  public :: relax_t, relax, motion_prepare, motion_refresh, unbalanced_ratio, largest_motion
 
   integer, parameter, public :: relax_balanced = 0, relax_moving = 1, relax_exhausted = 2, &
     relax_broken = 3
 
   !> Steps between two looks at the balance.
   integer, parameter :: look_every = 25
+  !> Steps between two looks at the stable step where the pore water moves with the soil: soil that
+  !> fills with water becomes stiff.
+  integer, parameter :: refresh_every = 250
 
   type :: relax_t
     integer :: outcome = relax_balanced !! one of relax_*
@@ -65,11 +68,31 @@ contains
     do i = 1, disc%n
       motion%mobility(:, i) = merge(0.0_dp, 1.0_dp/mass(i), conditions%held(:, i))
     end do
-    ! Local damping adds up to its fraction to a force that opposes the motion.
-    motion%step = safety*time_step_stable(disc, ground, state, motion, work)/sqrt(1.0_dp + motion%local)
+    motion%safety = safety
+    if (allocated(motion%mode)) deallocate (motion%mode)
+    motion%step = huge(1.0_dp)
+    call motion_refresh(disc, ground, state, motion, work)
     ! Without a node that can move, any step will do.
-    if (.not. motion%step > 0.0_dp) motion%step = 1.0_dp
+    if (motion%step > 0.1_dp*huge(1.0_dp)) motion%step = 1.0_dp
   end subroutine motion_prepare
+
+  !> Shorten the step where the body has become stiffer since it was last set.
+  subroutine motion_refresh(disc, ground, state, motion, work)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    type(motion_t), intent(inout) :: motion
+    type(work_t), intent(inout) :: work
+    real(dp), allocatable :: force(:,:)
+    real(dp) :: stable
+
+    force = work%force
+    stable = time_step_stable(disc, ground, state, motion, work)
+    work%force = force
+    ! Local damping adds up to its fraction to a force that opposes the motion.
+    if (stable > 0.0_dp) &
+      motion%step = min(motion%step, motion%safety*stable/sqrt(1.0_dp + motion%local))
+  end subroutine motion_refresh
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
   !> moved by more than `moved_max`, or `steps_max` steps were taken. Driven nodes first travel as
@@ -120,6 +143,8 @@ contains
         outcome%outcome = relax_moving
         return
       end if
+      if (motion%coupled .and. modulo(outcome%steps, refresh_every) == 0) &
+        call motion_refresh(disc, ground, state, motion, work)
     end do
   end subroutine relax
 

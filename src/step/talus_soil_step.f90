@@ -37,7 +37,9 @@ module talus_soil_step
     real(dp) :: step = 0.0_dp              !! time step [s]
     real(dp) :: local = 0.0_dp             !! local damping, 0..1
     real(dp) :: viscous = 0.0_dp           !! viscous damping [1/s]
+    real(dp) :: safety = 1.0_dp            !! step over stable step
     logical :: coupled = .false.           !! pore pressure follows the soil
+    real(dp), allocatable :: mode(:,:)     !! fastest mode when last looked for, (2,n)
     real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
   end type motion_t
 

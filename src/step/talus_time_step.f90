@@ -22,6 +22,8 @@ module talus_time_step
   !> Relative change of the eigenvalue at which the iteration stops, and its most turns.
   real(dp), parameter :: power_tolerance = 1.0e-5_dp
   integer, parameter :: power_max = 400
+  !> Part of the start vector that is new when the last fastest mode is known.
+  real(dp), parameter :: start_share = 0.3_dp
 
 contains
 
@@ -30,7 +32,7 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(state_t), intent(in) :: state
-    type(motion_t), intent(in) :: motion
+    type(motion_t), intent(inout) :: motion
     type(work_t), intent(inout) :: work
     real(dp), allocatable :: d(:,:), bulk(:), nothing(:,:)
     real(dp) :: square, before
@@ -41,7 +43,10 @@ contains
     call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
     call start_vector(motion%mobility, d)
     step = 0.0_dp
-    if (sum_products(2*disc%n, d, d) <= 0.0_dp) return
+    square = sum_products(2*disc%n, d, d)
+    if (square <= 0.0_dp) return
+    ! The fastest mode moves little from one look to the next; some of all others finds a new one.
+    if (allocated(motion%mode)) d = motion%mode + (start_share/sqrt(square))*d
     before = 0.0_dp
     do turn = 1, power_max
       ! In the metric of the mass the operator is symmetric: omega^2 = d.Kd/(d.Md) with
@@ -54,6 +59,7 @@ contains
       before = square
     end do
     step = 2.0_dp/sqrt(square)
+    motion%mode = d/sqrt(sum_products(2*disc%n, d, d))
   end function time_step_stable
 
   !> d.Kd/(d.Md) over the nodes that can move.

@@ -10,6 +10,9 @@ module talus_run
   use talus_state, only: state_allocate
   use talus_initial, only: initial_hydrostatic, initial_water, initial_k0, weight_masses
   use talus_soil_step, only: work_allocate
+  use talus_conditions, only: inlets_t
+  use talus_setup_conditions, only: setup_steady
+  use talus_steady, only: steady_solve
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
     result_write_mesh
   use talus_history, only: history_store, history_close
@@ -45,7 +48,7 @@ contains
     call state_allocate(session%state, session%disc, session%ground)
     call work_allocate(session%work, session%disc)
     call place_probes(session)
-    call start_state(session)
+    call start_state(session, status)
     call timer_stop(session%timer, 'set_up')
   end subroutine run_prepare
 
@@ -97,8 +100,10 @@ contains
   end subroutine place_probes
 
   !> Pore pressure, stress and mass at the start.
-  subroutine start_state(session)
+  subroutine start_state(session, status)
     type(session_t), intent(inout) :: session
+    type(status_t), intent(inout) :: status
+    type(inlets_t) :: inlets
     real(dp), allocatable :: pressure(:)
     real(dp) :: limit
 
@@ -108,13 +113,21 @@ contains
         select case (initial%pore_pressure)
         case ('uniform')
           pressure = -initial%suction
-        case ('hydrostatic')
+        case ('hydrostatic', 'steady')
           limit = huge(1.0_dp)
           if (deck_given(initial%suction_limit)) limit = initial%suction_limit
           pressure = initial_hydrostatic(disc, ground%unit_weight, &
             [initial%water_table, initial%water_table_right], limit)
         end select
         call initial_water(disc, ground, pressure, session%state)
+        if (initial%pore_pressure == 'steady') then
+          call setup_steady(session%deck, disc, inlets, status)
+          if (.not. status_failed(status)) call steady_solve(session%seepage, disc, ground, inlets, &
+                                                             session%state, status)
+          if (status_failed(status)) return
+          pressure = session%state%pressure
+          call initial_water(disc, ground, pressure, session%state)
+        end if
       end if
       call weight_masses(disc, ground, session%state)
       if (initial%stress == 'k0') call initial_k0(disc, ground, initial%lateral_stress_ratio, &

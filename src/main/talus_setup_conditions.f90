@@ -7,12 +7,13 @@ module talus_setup_conditions
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
-    inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlet_none, inlet_head, inlet_flux, &
-    inlet_rain, inlet_seepage
+    inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, inlet_none, inlet_head, &
+    inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_t, rain_constant, rain_read
+  use talus_steady, only: steady_heads
   implicit none
   private
-  public :: setup_conditions
+  public :: setup_conditions, setup_steady
 
 contains
 
@@ -45,6 +46,31 @@ contains
     end do
     call inlets_finish(conditions%inlets, paint, sets, rains)
   end subroutine setup_conditions
+
+  !> Where water crosses the boundary in the steady state before the run: as in the first stage that
+  !> moves water, with the antecedent rain in place of its rain, and the water table at the sides if
+  !> the deck names no head.
+  subroutine setup_steady(deck, disc, inlets, status)
+    type(deck_t), intent(in) :: deck
+    type(disc_t), intent(in) :: disc
+    type(inlets_t), intent(out) :: inlets
+    type(status_t), intent(inout) :: status
+    type(conditions_t) :: conditions
+    integer :: i, first
+
+    first = 1
+    do i = size(deck%stage), 1, -1
+      if (deck%stage(i)%solve /= 'soil') first = i
+    end do
+    call setup_conditions(deck, disc, deck%stage(first)%name, conditions, status)
+    if (status_failed(status)) return
+    inlets = conditions%inlets
+    do i = 1, size(inlets%rains)
+      inlets%rains(i) = rain_constant(deck%initial%antecedent_rain)
+    end do
+    call steady_heads(inlets, disc, [deck%initial%water_table, deck%initial%water_table_right], &
+                      status)
+  end subroutine setup_steady
 
   !> Held and driven directions.
   pure subroutine add_supports(boundary, set, conditions)

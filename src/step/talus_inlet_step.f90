@@ -10,10 +10,10 @@ module talus_inlet_step
   use talus_sum, only: sum_add
   use talus_conditions, only: inlets_t, inlet_head, inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_total
-  use talus_storage, only: storage_content
+  use talus_storage, only: storage_content, storage_invert
   implicit none
   private
-  public :: inlets_apply
+  public :: inlets_apply, inlets_heads
 
 contains
 
@@ -91,6 +91,33 @@ contains
       call sum_add(state%water%runoff, state%water%runoff_lost, min(volume, excess))
     end subroutine rain_in
   end subroutine inlets_apply
+
+  !> Give the nodes with a head their pressure, before the first fluxes are taken.
+  subroutine inlets_heads(inlets, height, disc, ground, state)
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: height(:) !! elevation of the nodes [m], (n)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(inout) :: state
+    real(dp) :: pressure, content, pore
+    integer :: k
+
+    do k = 1, size(inlets%node)
+      if (inlets%kind(k) /= inlet_head) cycle
+      associate (i => inlets%node(k), soil => disc%soil(inlets%node(k)), &
+                 jacobian => state%jacobian(inlets%node(k)))
+        pressure = ground%unit_weight*(inlets%value(k) - height(i))
+        pore = jacobian - 1.0_dp + ground%porosity(soil)
+        content = storage_content(ground%curve(soil), ground%storage(soil), pore, jacobian, pressure)
+        if (.not. abs(content - state%content(i)) > 0.0_dp) cycle
+        call book(state%water, (content - state%content(i))*disc%dual%area(i))
+        state%content(i) = content
+        call storage_invert(ground%curve(soil), ground%storage(soil), pore, jacobian, content, &
+          state%pressure(i), state%saturation(i), state%ratio(i), state%potential(i), &
+          state%capacity(i))
+      end associate
+    end do
+  end subroutine inlets_heads
 
   !> Book a volume as inflow or, when negative, as outflow.
   pure subroutine book(balance, volume)

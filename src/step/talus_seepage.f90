@@ -1,98 +1,45 @@
 ! SPDX-License-Identifier: MIT
-!> Explicit seepage in storage form (src/THEORY.md sections 2, 4 and 5). Each face carries one flux
-!> that leaves one cell and enters the other, so water is conserved to round-off:
+!> Seepage in storage form (src/THEORY.md sections 2, 4 and 5):
 !>
-!>   pressure <- stored water            invert (and again after each sub-step)
-!>   q        = flux through every face  face_fluxes
-!>   dt       = stable step              step_limit
-!>   w        = w + dt (sum q)/A         store
-!>   rain, ponding, seepage faces, heads inlets_apply
+!>   q = flux through every face         explicit: of the pressures now; implicit: of those to come
+!>   w = w - step (sum q)/A              the same for both, so water is conserved to round-off
+!>   rain, ponds, seepage faces, heads   inlets_apply
+!>   pressure <- stored water            seepage_invert
+!>
+!> Each sub-step is explicit or implicit, whichever advances further for its cost. An explicit step
+!> is taken back when the water it moved makes it unstable; an implicit one when it moves too much
+!> water, or when its equations have no solution within a few iterations.
 module talus_seepage
   use talus_kinds, only: dp, i8
   use talus_disc, only: disc_t
-  use talus_dual_cells, only: dual_t
   use talus_ground, only: ground_t
-  use talus_state, only: state_t
-  use talus_conditions, only: inlets_t, inlets_catch
-  use talus_flux, only: flux_t, flux_build
-  use talus_face_flow, only: face_drive, face_mean
-  use talus_permeability, only: permeability_kozeny_carman
+  use talus_state, only: state_t, water_balance_t
+  use talus_conditions, only: inlets_t, inlet_flux, inlet_rain
+  use talus_rain, only: rain_total, rain_next_change
   use talus_storage, only: storage_invert
-  use talus_water_curve, only: curve_at_pressure
-  use talus_strain, only: strain_first
-  use talus_inlet_step, only: inlets_apply
+  use talus_darcy, only: seepage_t, seepage_shape, seepage_hold, face_fluxes, cell_outflow, &
+    seepage_step_limit, seepage_velocity
+  use talus_seepage_newton, only: newton_t, newton_prepare, newton_solve, newton_cost
+  use talus_inlet_step, only: inlets_apply, inlets_heads
+  use talus_sum, only: sum_add
   implicit none
   private
   public :: seepage_t, seepage_shape, seepage_advance, seepage_invert, face_fluxes, seepage_velocity
-  public :: seepage_step_limit
+  public :: seepage_step_limit, seepage_supply
 
-  !> Fraction of the limit that a sub-step takes.
-  real(dp), parameter :: safety = 0.95_dp
-
-  !> Geometry of the seepage in the present shape, and fields of a sub-step.
-  type :: seepage_t
-    type(flux_t) :: flux
-    real(dp), allocatable :: tensor(:,:)   !! J F^-1 k_sat F^-T: xx, yy, xy [m/s], (3,n)
-    real(dp), allocatable :: height(:)     !! present elevation [m], (n)
-    real(dp), allocatable :: catch(:)      !! length of each inlet [m]
-    real(dp), allocatable :: q(:)          !! flux through each face, first to second [m2/s]
-    real(dp), allocatable :: peclet(:)     !! of each face
-    real(dp), allocatable :: head(:,:)     !! total head [m], (2,n); second row unused zeros
-    real(dp), allocatable :: slope(:,:)    !! area times gradient of head [m2], (4,n)
-  end type seepage_t
+  !> Fraction of the stability limit that an explicit step takes, and the most it may have of the
+  !> limit after it.
+  real(dp), parameter :: safety = 0.95_dp, excess = 1.5_dp
+  !> Most growth from one explicit step to the next, and what a rejected one is divided by.
+  real(dp), parameter :: growth = 2.0_dp, cut = 8.0_dp
+  integer, parameter :: most_cuts = 7
+  !> Water content that an implicit step may change in a cell [-].
+  real(dp), parameter :: content_change = 0.01_dp
+  !> Last relative change of pressure and iterations of an implicit step.
+  real(dp), parameter :: newton_tolerance = 1.0e-7_dp
+  integer, parameter :: newton_most = 15
 
 contains
-
-  !> Take the present shape of the soil.
-  subroutine seepage_shape(seepage, disc, ground, inlets, state)
-    type(seepage_t), intent(inout) :: seepage
-    type(disc_t), intent(in) :: disc
-    type(ground_t), intent(in) :: ground
-    type(inlets_t), intent(in) :: inlets
-    type(state_t), intent(in) :: state
-    real(dp) :: k(2), jacobian
-    integer :: i, soil
-
-    if (.not. allocated(seepage%tensor)) then
-      allocate (seepage%tensor(3, disc%n), seepage%height(disc%n))
-      allocate (seepage%q(size(disc%dual%edge_node, 2)), seepage%peclet(size(disc%dual%edge_node, 2)))
-    end if
-    !$omp parallel do default(none) shared(seepage, disc, ground, state) private(i, soil, k, jacobian) &
-    !$omp schedule(static)
-    do i = 1, disc%n
-      soil = disc%soil(i)
-      jacobian = state%jacobian(i)
-      k = present_conductivity(ground, soil, jacobian)
-      associate (f => state%f(:, i))
-        ! F^-1 = [f22, -f12; -f21, f11]/J.
-        seepage%tensor(1, i) = (k(1)*f(4)**2 + k(2)*f(2)**2)/jacobian
-        seepage%tensor(2, i) = (k(1)*f(3)**2 + k(2)*f(1)**2)/jacobian
-        seepage%tensor(3, i) = -(k(1)*f(3)*f(4) + k(2)*f(1)*f(2))/jacobian
-      end associate
-      seepage%height(i) = disc%mesh%x(2, i) + state%u(2, i)
-    end do
-    !$omp end parallel do
-    call flux_build(seepage%flux, disc%mesh%x, disc%dual, seepage%tensor)
-    if (seepage%flux%oblique .and. .not. allocated(seepage%head)) then
-      allocate (seepage%head(2, disc%n), seepage%slope(4, disc%n))
-      seepage%head = 0.0_dp
-    end if
-    if (allocated(seepage%catch)) deallocate (seepage%catch)
-    allocate (seepage%catch(size(inlets%node)))
-    call inlets_catch(inlets, disc, state%u, seepage%catch)
-  end subroutine seepage_shape
-
-  !> Saturated conductivity along x and y at the present porosity [m/s].
-  pure function present_conductivity(ground, soil, jacobian) result(k)
-    type(ground_t), intent(in) :: ground
-    integer, intent(in) :: soil
-    real(dp), intent(in) :: jacobian !! J [-]
-    real(dp) :: k(2)
-
-    k = ground%conductivity(:, soil)
-    if (ground%kozeny_carman(soil)) k = k*permeability_kozeny_carman( &
-      1.0_dp - (1.0_dp - ground%porosity(soil))/jacobian, ground%porosity(soil))
-  end function present_conductivity
 
   !> Pressures and flow properties of the stored water.
   subroutine seepage_invert(disc, ground, state)
@@ -112,8 +59,8 @@ contains
     !$omp end parallel do
   end subroutine seepage_invert
 
-  !> Advance the water from the state's time by `duration`, with the soil at rest. Sub-steps are as
-  !> long as stability allows, and `duration` at most. The state's time is left to the caller.
+  !> Advance the water from the state's time by `duration`, with the soil at rest. The state's time
+  !> is left to the caller.
   subroutine seepage_advance(seepage, disc, ground, inlets, start, duration, state)
     type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
@@ -122,180 +69,226 @@ contains
     real(dp), intent(in) :: start    !! time for the rain [s]
     real(dp), intent(in) :: duration !! [s]
     type(state_t), intent(inout) :: state
-    real(dp) :: done, step
-    integer :: i
+    type(newton_t) :: newton
+    real(dp) :: done, step, limit, allowed, cost
+    logical :: finished
 
+    cost = newton_cost(disc)
+    call inlets_heads(inlets, seepage%height, disc, ground, state)
+    call seepage_hold(seepage, inlets, state%pressure)
+    call face_fluxes(seepage, disc, ground, state)
+    limit = seepage_step_limit(seepage, disc, ground, state)
     done = 0.0_dp
-    do while (done < duration)
-      call face_fluxes(seepage, disc, ground, state)
-      step = safety*seepage_step_limit(seepage, disc, ground, state)
-      ! Two even last steps instead of a full one and a sliver.
-      if (done + step >= duration) then
-        step = duration - done
-      else if (done + 2.0_dp*step > duration) then
-        step = 0.5_dp*(duration - done)
+    finished = .not. duration > 0.0_dp
+    do while (.not. finished)
+      allowed = allowed_step(inlets, start + done, duration - done)
+      step = min(safety*limit, allowed)
+      if (seepage%last > 0.0_dp) step = min(step, growth*seepage%last)
+      if (min(seepage%stride, allowed) > cost*step) then
+        call newton_prepare(newton, disc)
+        call implicit_step(newton, seepage, disc, ground, inlets, start + done, allowed, state, step)
+      else
+        ! Two even last steps instead of a full one and a sliver.
+        if (step < allowed .and. 2.0_dp*step > allowed) step = 0.5_dp*allowed
+        call explicit_step(seepage, disc, ground, inlets, start + done, state, step)
       end if
-      !$omp parallel do default(none) shared(seepage, disc, state, step) private(i) schedule(static)
-      do i = 1, disc%n
-        state%content(i) = state%content(i) &
-          - step/disc%dual%area(i)*outflow(disc%dual, seepage%q, i)
-      end do
-      !$omp end parallel do
-      call inlets_apply(inlets, seepage%catch, seepage%height, disc, ground, start + done, step, state)
-      call seepage_invert(disc, ground, state)
       state%seepage_steps = state%seepage_steps + 1_i8
-      if (done + step >= duration) exit
+      limit = seepage_step_limit(seepage, disc, ground, state)
+      finished = done + step >= duration*(1.0_dp - 1.0e-14_dp)
       done = done + step
     end do
   end subroutine seepage_advance
 
-  !> Net flux out of a cell [m2/s].
-  pure real(dp) function outflow(dual, q, i)
-    type(dual_t), intent(in) :: dual
-    real(dp), contiguous, intent(in) :: q(:)
-    integer, intent(in) :: i
-    integer :: k
+  !> Time to the end or to the next change of a rain [s].
+  pure real(dp) function allowed_step(inlets, time, remaining) result(allowed)
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time, remaining !! [s]
+    real(dp) :: change
+    integer :: i
 
-    outflow = 0.0_dp
-    do k = dual%node_offset(i), dual%node_offset(i+1) - 1
-      outflow = outflow + dual%node_sign(k)*q(dual%node_edge(k))
+    allowed = remaining
+    do i = 1, size(inlets%rains)
+      change = rain_next_change(inlets%rains(i), time) - time
+      if (change > 1.0e-9_dp*max(1.0_dp, abs(time))) allowed = min(allowed, change)
     end do
-  end function outflow
+  end function allowed_step
 
-  !> Flux through every face in the present state.
-  subroutine face_fluxes(seepage, disc, ground, state)
+  !> One explicit step with the fluxes at hand, shortened until it is stable after the fact.
+  subroutine explicit_step(seepage, disc, ground, inlets, time, state, step)
     type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    integer :: e, i
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time
+    type(state_t), intent(inout) :: state
+    real(dp), intent(inout) :: step !! in: longest; out: taken [s]
+    type(water_balance_t) :: water
+    real(dp), allocatable :: content(:), q(:)
+    real(dp) :: moved
+    integer :: cuts
 
-    !$omp parallel default(none) shared(seepage, disc, ground, state) private(e, i)
-    if (seepage%flux%oblique) then
-      !$omp do schedule(static)
-      do i = 1, disc%n
-        seepage%head(1, i) = state%pressure(i)/ground%unit_weight + seepage%height(i)
-      end do
-      !$omp end do
-      call strain_first(disc%scni, seepage%head, seepage%slope)
-    end if
-    !$omp do schedule(static)
-    do e = 1, size(seepage%q)
-      call face_flux(seepage, disc, ground, state, e, seepage%q(e), seepage%peclet(e))
+    content = state%content
+    q = seepage%q
+    water = state%water
+    do cuts = 0, most_cuts
+      call take_step(seepage, disc, ground, inlets, time, step, state)
+      call face_fluxes(seepage, disc, ground, state)
+      if (step <= excess*seepage_step_limit(seepage, disc, ground, state)) exit
+      if (cuts == most_cuts) exit
+      step = step/cut
+      state%content = content
+      state%water = water
+      seepage%q = q
     end do
-    !$omp end do
-    !$omp end parallel
-  end subroutine face_fluxes
+    moved = maxval(abs(state%content - content))
+    seepage%stride = step*content_change/max(moved, 1.0e-12_dp)
+    seepage%last = step
+  end subroutine explicit_step
 
-  !> Flux through one face.
-  pure subroutine face_flux(seepage, disc, ground, state, e, q, peclet)
-    type(seepage_t), intent(in) :: seepage
+  !> One implicit step, shortened until it converges and moves little enough water.
+  subroutine implicit_step(newton, seepage, disc, ground, inlets, time, allowed, state, step)
+    type(newton_t), intent(inout) :: newton
+    type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: e
-    real(dp), intent(out) :: q, peclet
-    real(dp) :: drop, drive, mean, gradient(2)
-    integer :: i, j
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time, allowed !! [s]
+    type(state_t), intent(inout) :: state
+    real(dp), intent(inout) :: step !! in: an explicit one, the shortest tried; out: taken [s]
+    type(water_balance_t) :: water
+    real(dp), allocatable :: content(:), pressure(:)
+    real(dp) :: moved, shortest
+    logical :: converged
+    logical, allocatable :: held(:)
+    integer :: iterations
 
-    i = disc%dual%edge_node(1, e)
-    j = disc%dual%edge_node(2, e)
-    drop = ground%unit_weight*(seepage%height(j) - seepage%height(i))
-    if (disc%soil(i) == disc%soil(j)) then
-      call face_drive(state%pressure(i), state%pressure(j), state%potential(i), &
-        state%potential(j), state%ratio(i), state%ratio(j), drop, drive, peclet)
-      mean = 0.0_dp
-      if (seepage%flux%oblique) mean = face_mean(state%pressure(i), state%pressure(j), &
-        state%potential(i), state%potential(j), state%ratio(i), state%ratio(j))
-    else
-      call layered_drive(ground, disc%soil(i), disc%soil(j), state%pressure(i), &
-        state%pressure(j), seepage%flux%share(:, e), drop, drive, mean)
-      peclet = 1.0_dp
-    end if
-    q = -seepage%flux%along(e)*drive/ground%unit_weight
-    if (seepage%flux%oblique) then
-      gradient = 0.5_dp*(seepage%slope(1:2, i)/disc%dual%area(i) &
-                       + seepage%slope(1:2, j)/disc%dual%area(j))
-      q = q - mean*dot_product(gradient, seepage%flux%rest(:, e))
-    end if
-  end subroutine face_flux
-
-  !> Between two soils: each half of the edge has its own soil's mean conductivity, and the halves
-  !> are resistances in series.
-  pure subroutine layered_drive(ground, soil_i, soil_j, p_i, p_j, share, drop, drive, mean)
-    type(ground_t), intent(in) :: ground
-    integer, intent(in) :: soil_i, soil_j
-    real(dp), intent(in) :: p_i, p_j, share(2), drop
-    real(dp), intent(out) :: drive, mean
-    real(dp) :: k(2)
-
-    k(1) = own_mean(ground, soil_i, p_i, p_j)
-    k(2) = own_mean(ground, soil_j, p_i, p_j)
-    mean = 1.0_dp/(share(1)/k(1) + share(2)/k(2))
-    drive = mean*((p_j - p_i) + drop)
-  end subroutine layered_drive
-
-  !> Mean conductivity of one soil between two pressures.
-  pure real(dp) function own_mean(ground, soil, p_i, p_j) result(mean)
-    type(ground_t), intent(in) :: ground
-    integer, intent(in) :: soil
-    real(dp), intent(in) :: p_i, p_j
-    real(dp) :: saturation, k(2), potential(2), capacity
-
-    call curve_at_pressure(ground%curve(soil), p_i, saturation, k(1), potential(1), capacity)
-    call curve_at_pressure(ground%curve(soil), p_j, saturation, k(2), potential(2), capacity)
-    mean = face_mean(p_i, p_j, potential(1), potential(2), k(1), k(2))
-  end function own_mean
-
-  !> Longest step that keeps every cell's own pressure from overshooting its neighbours' [s]: the
-  !> stability limit of explicit diffusion, from the fluxes just found.
-  real(dp) function seepage_step_limit(seepage, disc, ground, state) result(step)
-    type(seepage_t), intent(in) :: seepage
-    type(disc_t), intent(in) :: disc
-    type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    real(dp) :: fastest, around, k_face
-    integer :: i, k, e, j
-
-    fastest = tiny(1.0_dp)
-    !$omp parallel do default(none) shared(seepage, disc, ground, state) &
-    !$omp private(i, k, e, j, around, k_face) reduction(max:fastest) schedule(static)
-    do i = 1, disc%n
-      around = 0.0_dp
-      do k = disc%dual%node_offset(i), disc%dual%node_offset(i+1) - 1
-        e = disc%dual%node_edge(k)
-        j = disc%dual%node_neighbour(k)
-        k_face = state%ratio(i)
-        if (disc%soil(i) /= disc%soil(j)) k_face = max(k_face, state%ratio(j))
-        around = around + seepage%flux%along(e)*k_face*(1.0_dp + seepage%peclet(e))
-      end do
-      fastest = max(fastest, around/(ground%unit_weight*disc%dual%area(i)*state%capacity(i)))
+    content = state%content
+    pressure = state%pressure
+    held = seepage%held
+    water = state%water
+    shortest = step
+    step = min(seepage%stride, allowed)
+    if (step < allowed .and. 2.0_dp*step > allowed) step = 0.5_dp*allowed
+    do
+      call two_stages(newton, seepage, disc, ground, inlets, time, step, state, converged, iterations)
+      moved = maxval(abs(state%content - content))
+      if (converged .and. (moved <= 2.0_dp*content_change .or. step <= shortest)) exit
+      if (converged) then
+        step = step*max(0.25_dp, 0.8_dp*content_change/moved)
+      else
+        step = 0.25_dp*step
+      end if
+      state%content = content
+      state%pressure = pressure
+      seepage%held = held
+      state%water = water
+      if (step > shortest) cycle
+      ! No luck: the explicit step that was at hand.
+      step = shortest
+      call seepage_invert(disc, ground, state)
+      call face_fluxes(seepage, disc, ground, state)
+      call explicit_step(seepage, disc, ground, inlets, time, state, step)
+      return
     end do
-    !$omp end parallel do
-    step = 1.0_dp/fastest
-  end function seepage_step_limit
+    seepage%stride = step*min(2.0_dp, 0.9_dp*content_change/max(moved, 1.0e-12_dp))
+    if (iterations > 10) seepage%stride = min(seepage%stride, step)
+    seepage%last = 0.0_dp
+    call face_fluxes(seepage, disc, ground, state)
+  end subroutine implicit_step
 
-  !> Darcy velocity at the nodes [m/s], for output.
-  subroutine seepage_velocity(disc, ground, state, velocity)
+  !> An implicit step of second order (Alexander 1977, two stages, L-stable): a backward step of
+  !> theta, its change of water stretched to 1 - theta, and a second backward step of theta. Both
+  !> stages exchange fluxes, so their sum conserves water too.
+  subroutine two_stages(newton, seepage, disc, ground, inlets, time, step, state, converged, &
+    iterations)
+    type(newton_t), intent(inout) :: newton
+    type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    real(dp), intent(out) :: velocity(:,:) !! (2,n)
-    real(dp), allocatable :: head(:,:), slope(:,:)
-    real(dp) :: gradient(2), k(2)
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time, step !! [s]
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: converged
+    integer, intent(out) :: iterations !! of the harder stage
+    real(dp), parameter :: theta = 1.0_dp - sqrt(0.5_dp), stretch = (1.0_dp - theta)/theta
+    type(water_balance_t) :: water
+    real(dp), allocatable :: content(:)
+    integer :: stage, needed
+
+    content = state%content
+    water = state%water
+    iterations = 0
+    do stage = 1, 2
+      call newton_solve(newton, seepage, disc, ground, inlets, 1.0_dp/(theta*step), &
+        seepage_supply(seepage, inlets, time, theta*step), newton_tolerance, newton_most, state, &
+        converged, needed)
+      iterations = max(iterations, needed)
+      if (.not. converged) return
+      call take_step(seepage, disc, ground, inlets, time, theta*step, state)
+      if (stage == 2) exit
+      state%content = content + stretch*(state%content - content)
+      call water_stretch(state%water, water, stretch)
+    end do
+  end subroutine two_stages
+
+  !> Count what happened since `before` a number of times.
+  pure subroutine water_stretch(water, before, times)
+    type(water_balance_t), intent(inout) :: water
+    type(water_balance_t), intent(in) :: before
+    real(dp), intent(in) :: times
+
+    call stretch(water%inflow, water%inflow_lost, before%inflow, before%inflow_lost)
+    call stretch(water%outflow, water%outflow_lost, before%outflow, before%outflow_lost)
+    call stretch(water%runoff, water%runoff_lost, before%runoff, before%runoff_lost)
+
+  contains
+
+    pure subroutine stretch(total, lost, total_before, lost_before)
+      real(dp), intent(inout) :: total, lost
+      real(dp), intent(in) :: total_before, lost_before
+      real(dp) :: part
+
+      part = times*((total - total_before) - (lost - lost_before))
+      total = total_before
+      lost = lost_before
+      call sum_add(total, lost, part)
+    end subroutine stretch
+  end subroutine water_stretch
+
+  !> Move the water of the fluxes at hand, and what crosses the boundary.
+  subroutine take_step(seepage, disc, ground, inlets, time, step, state)
+    type(seepage_t), intent(inout) :: seepage
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time, step !! [s]
+    type(state_t), intent(inout) :: state
     integer :: i
 
-    allocate (head(2, disc%n), slope(4, disc%n))
-    head(1, :) = state%pressure/ground%unit_weight + disc%mesh%x(2, :) + state%u(2, :)
-    head(2, :) = 0.0_dp
-    call strain_first(disc%scni, head, slope)
+    !$omp parallel do default(none) shared(seepage, disc, state, step) private(i) schedule(static)
     do i = 1, disc%n
-      associate (f => state%f(:, i), g => slope(1:2, i)/disc%dual%area(i))
-        ! Present gradient F^-T grad.
-        gradient = [f(4)*g(1) - f(3)*g(2), f(1)*g(2) - f(2)*g(1)]/state%jacobian(i)
-      end associate
-      k = present_conductivity(ground, disc%soil(i), state%jacobian(i))
-      velocity(:, i) = -state%ratio(i)*k*gradient
+      state%content(i) = state%content(i) &
+        - step/disc%dual%area(i)*cell_outflow(disc%dual, seepage%q, i)
     end do
-  end subroutine seepage_velocity
+    !$omp end parallel do
+    call inlets_apply(inlets, seepage%catch, seepage%height, disc, ground, time, step, state)
+    call seepage_invert(disc, ground, state)
+    call seepage_hold(seepage, inlets, state%pressure)
+  end subroutine take_step
+
+  !> Water offered at each inlet over a step [m2/s], (m).
+  pure function seepage_supply(seepage, inlets, time, step) result(supply)
+    type(seepage_t), intent(in) :: seepage
+    type(inlets_t), intent(in) :: inlets
+    real(dp), intent(in) :: time, step !! [s]
+    real(dp) :: supply(size(inlets%node))
+    integer :: k
+
+    supply = 0.0_dp
+    do k = 1, size(inlets%node)
+      if (inlets%kind(k) == inlet_flux) supply(k) = inlets%value(k)*seepage%catch(k)
+      if (inlets%kind(k) == inlet_rain) supply(k) = seepage%catch(k)/step &
+        *rain_total(inlets%rains(inlets%rain(k)), time, time + step)
+    end do
+  end function seepage_supply
 end module talus_seepage

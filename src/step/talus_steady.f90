@@ -1,0 +1,162 @@
+! SPDX-License-Identifier: MIT
+!> Steady seepage (src/THEORY.md section 5, geostatic start): pseudo-transient continuation (Kelley &
+!> Keyes 1998). Implicit steps on the storage form grow until storage no longer matters; Newton's
+!> method without storage finishes. The fluxes are those of the transient seepage, so a run that
+!> starts here stays here while nothing changes.
+module talus_steady
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_numeric, status_deck
+  use talus_text, only: text_of
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_boundary_sets, only: boundary_set_t, boundary_set_build
+  use talus_conditions, only: inlets_t, inlet_head, inlet_seepage
+  use talus_storage, only: storage_content
+  use talus_darcy, only: seepage_t, seepage_shape, cell_outflow
+  use talus_seepage, only: seepage_supply
+  use talus_seepage_newton, only: newton_t, newton_prepare, newton_solve
+  implicit none
+  private
+  public :: steady_solve, steady_heads, steady_inflow
+
+  !> First, last and smallest pseudo-step [s].
+  real(dp), parameter :: step_first = 3600.0_dp, step_last = 1.0e12_dp, step_least = 1.0e-3_dp
+  !> Last relative change of pressure in a pseudo-step and at the end.
+  real(dp), parameter :: tolerance_way = 1.0e-5_dp, tolerance_end = 1.0e-11_dp
+  integer, parameter :: most_way = 20, most_end = 60, most_steps = 300
+
+contains
+
+  !> From the pressures of `state`, a first guess, to those of steady flow. Content and flow
+  !> properties follow; rains count with their intensity at time 0.
+  subroutine steady_solve(seepage, disc, ground, inlets, state, status)
+    type(seepage_t), intent(inout) :: seepage !! on return with the steady fluxes
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(inlets_t), intent(in) :: inlets
+    type(state_t), intent(inout) :: state
+    type(status_t), intent(inout) :: status
+    type(newton_t) :: newton
+    real(dp), allocatable :: supply(:), pressure(:)
+    logical, allocatable :: held(:)
+    real(dp) :: step
+    logical :: converged
+    integer :: iterations, i
+
+    if (.not. any(inlets%kind == inlet_head .or. inlets%kind == inlet_seepage)) then
+      call status_set(status, status_deck, 'pore_pressure = ''steady'': no boundary lets water out; '// &
+        'allowed: at least one &boundary with water = ''head'' or ''seepage_face'', or a water_table')
+      return
+    end if
+    call seepage_shape(seepage, disc, ground, inlets, state)
+    call newton_prepare(newton, disc)
+    supply = seepage_supply(seepage, inlets, 0.0_dp, 1.0_dp)
+    step = step_first
+    do i = 1, most_steps
+      pressure = state%pressure
+      held = seepage%held
+      if (step < step_last) then
+        call newton_solve(newton, seepage, disc, ground, inlets, 1.0_dp/step, supply, &
+          tolerance_way, most_way, state, converged, iterations)
+      else
+        call newton_solve(newton, seepage, disc, ground, inlets, 0.0_dp, supply, tolerance_end, &
+          most_end, state, converged, iterations)
+        if (converged) return
+      end if
+      if (converged) then
+        call store(disc, ground, state)
+        step = step*merge(10.0_dp, 3.0_dp, iterations <= 6)
+      else
+        state%pressure = pressure
+        seepage%held = held
+        step = min(step, step_last)/10.0_dp
+        if (step < step_least) exit
+      end if
+    end do
+    call status_set(status, status_numeric, 'pore_pressure = ''steady'': no steady seepage found; '// &
+      'last pseudo-step '//text_of(step)//' s after '//text_of(i)//' steps, largest imbalance '// &
+      text_of(maxval(abs(newton%residual), mask=.not. seepage%held))//' m2/s of an offer of '// &
+      text_of(sum(supply))//' m2/s; the rain may exceed what the ground can drain')
+  end subroutine steady_solve
+
+  !> Take the water of the present pressures as stored.
+  subroutine store(disc, ground, state)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, disc%n
+      associate (soil => disc%soil(i), jacobian => state%jacobian(i))
+        state%content(i) = storage_content(ground%curve(soil), ground%storage(soil), &
+          jacobian - 1.0_dp + ground%porosity(soil), jacobian, state%pressure(i))
+      end associate
+    end do
+  end subroutine store
+
+  !> Where a deck names no head: the water table at the left and right side up to its elevation, or,
+  !> where it lies below the body, at the bottom.
+  subroutine steady_heads(inlets, disc, table, status)
+    type(inlets_t), intent(inout) :: inlets
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: table(2) !! elevation at the left and the right end [m]
+    type(status_t), intent(inout) :: status
+    type(boundary_set_t) :: set
+    character(6), parameter :: side(2) = ['left  ', 'right ']
+    real(dp) :: left, right, level
+    integer :: k, i
+
+    if (any(inlets%kind == inlet_head)) return
+    do k = 1, 2
+      call boundary_set_build(set, disc%mesh, disc%dual, trim(side(k)), spread(0.0_dp, 1, 4), status)
+      do i = 1, size(set%node)
+        if (disc%mesh%x(2, set%node(i)) <= table(k)) call add_head(inlets, set%node(i), table(k))
+      end do
+    end do
+    if (any(inlets%kind == inlet_head)) return
+    left = minval(disc%mesh%x(1, :))
+    right = maxval(disc%mesh%x(1, :))
+    call boundary_set_build(set, disc%mesh, disc%dual, 'bottom', spread(0.0_dp, 1, 4), status)
+    do i = 1, size(set%node)
+      level = table(1) + (table(2) - table(1))*(disc%mesh%x(1, set%node(i)) - left)/(right - left)
+      call add_head(inlets, set%node(i), level)
+    end do
+  end subroutine steady_heads
+
+  !> Make a node one with a head, whether or not it was an inlet.
+  pure subroutine add_head(inlets, node, head)
+    type(inlets_t), intent(inout) :: inlets
+    integer, intent(in) :: node
+    real(dp), intent(in) :: head !! [m]
+    integer :: k, m
+
+    m = size(inlets%node)
+    do k = 1, m
+      if (inlets%node(k) /= node) cycle
+      inlets%kind(k) = inlet_head
+      inlets%value(k) = head
+      return
+    end do
+    inlets%node = [inlets%node, node]
+    inlets%kind = [inlets%kind, inlet_head]
+    inlets%value = [inlets%value, head]
+    inlets%rain = [inlets%rain, 0]
+    inlets%offset = [inlets%offset, inlets%offset(m+1)]
+  end subroutine add_head
+
+  !> Water that enters at each inlet in a steady state [m2/s], negative where it leaves, (m).
+  function steady_inflow(seepage, disc, inlets) result(inflow)
+    type(seepage_t), intent(in) :: seepage
+    type(disc_t), intent(in) :: disc
+    type(inlets_t), intent(in) :: inlets
+    real(dp) :: inflow(size(inlets%node))
+    integer :: k
+
+    inflow = seepage_supply(seepage, inlets, 0.0_dp, 1.0_dp)
+    do k = 1, size(inlets%node)
+      if (seepage%held(inlets%node(k))) &
+        inflow(k) = cell_outflow(disc%dual, seepage%q, inlets%node(k))
+    end do
+  end function steady_inflow
+end module talus_steady

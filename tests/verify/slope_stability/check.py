@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""S1, Griffiths & Lane (1999) example 1: 2:1 slope, H = 10 m, phi = 20, psi = 0, gamma = 20 kN/m3.
+
+c/(gamma H) = 0.05 stands. Strength divided by a factor: published factor of safety 1.380 (Bishop &
+Morgenstern), (1.35, 1.40] by finite elements: it stands at 1.35 and falls at 1.40 at both levels.
+c/(gamma H) = 0.02 still stands, with a factor of 1.06 by Bishop's circles (searched for this test),
+and falls with its strength divided by 1.10; 0.01 (factor 0.94) falls as it is. A slope that does not
+stand ends the geostatic stage, and the run, with exit code 3; in a storm the run goes on and tells
+`failed`. The balance is asked to 1e-5 of the load: a slope at 1.40 creeps on at 1e-4.
+"""
+
+import math
+import sys
+
+sys.path.insert(0, __file__.rsplit("/", 2)[0])
+from talus_case import Case  # noqa: E402
+
+case = Case(__file__.rsplit("/", 1)[0])
+TWO = "levels = 2\n  length = 1.4"
+
+
+def run(ratio, factor, levels, stands):
+    friction = math.degrees(math.atan(math.tan(math.radians(20.0)) / factor))
+    result = case.run("slope.nml", [
+        ("cohesion = 10.0e3", f"cohesion = {ratio * 200.0e3 / factor}"),
+        ("friction_angle = 20.0", f"friction_angle = {friction}"), ("levels = 1", levels)],
+        code=0 if stands else 3)
+    what = f"c/(gamma H) = {ratio}, strength over {factor}, {levels.split(chr(10))[0]}"
+    if stands:
+        case.check_true(what + ": stands, also in a storm", result.summary["failed"] == ".false.")
+    else:
+        case.check_true(what + ": falls, and says so",
+                        "no equilibrium within steps_max" in result.done.stderr
+                        and "does not stand" in result.done.stderr)
+
+
+for levels in ("levels = 1", TWO):
+    run(0.05, 1.0, levels, True)
+    run(0.05, 1.35, levels, True)
+    run(0.05, 1.40, levels, False)
+run(0.02, 1.0, "levels = 1", True)
+run(0.02, 1.10, "levels = 1", False)
+run(0.01, 1.0, "levels = 1", False)
+sys.exit(case.verdict())

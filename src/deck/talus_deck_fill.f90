@@ -178,6 +178,7 @@ contains
     call get(store, s, 'alpha', water%alpha)
     call get(store, s, 'n', water%n)
     call get(store, s, 'pore_connectivity', water%pore_connectivity)
+    call get(store, s, 'c_parameter', water%c_parameter)
     call get(store, s, 'air_entry_cut', water%air_entry_cut)
     call get(store, s, 'air_entry', water%air_entry)
     call get(store, s, 'lambda', water%lambda)

@@ -69,7 +69,7 @@ contains
              'Random shift of the inner nodes, as a fraction of the spacing.')
     call key(t, 'seed', 'integer', '', '1', '[1, 2000000000]', &
              'Start of the random numbers: the same seed gives the same nodes.')
-    call key(t, 'support', 'real', '', '1.6', '[1.1, 4]', &
+    call key(t, 'support', 'real', '', '1.6', '[1.45, 4]', &
              'Kernel support radius as a multiple of the node spacing.')
   end subroutine keys_add_nodes
 
@@ -105,7 +105,8 @@ contains
     call key(t, 'suction', 'real', 'Pa', '*', '[-1e9, 1e9]', &
              'Suction everywhere; negative is a positive pore pressure.', 'pore_pressure=uniform')
     call key(t, 'water_table', 'real', 'm', '*', '[-1e7, 1e7]', &
-             'Elevation y of the water table, at the left end if it is inclined.', &
+             'Elevation y of the water table, at the left end if it is inclined; with steady it '// &
+             'counts where no &boundary gives a head: at the sides, or below the body at the bottom.', &
              'pore_pressure=hydrostatic|steady')
     call key(t, 'water_table_right', 'real', 'm', '=water_table', '[-1e7, 1e7]', &
              'Elevation y of the water table at the right end.', 'pore_pressure=hydrostatic|steady')

@@ -19,7 +19,8 @@ contains
     call key(t, 'soil', 'string', '', '', '', &
              'Name of the soil; blank: every soil not named by another &water.')
     call key(t, 'retention', 'string', '', '*', &
-             'van_genuchten|gardner|brooks_corey|fredlund_xing|table', 'Retention law.')
+             'van_genuchten|gardner|brooks_corey|fredlund_xing|table|broadbridge_white', &
+             'Retention law.')
     call key(t, 'conductivity_x', 'real', 'm/s', '*', '(0, 10]', &
              'Saturated hydraulic conductivity along x.')
     call key(t, 'conductivity_y', 'real', 'm/s', '=conductivity_x', '(0, 10]', &
@@ -29,15 +30,19 @@ contains
     call key(t, 'saturation_maximum', 'real', '', '1', '(0, 1]', &
              'Degree of saturation at zero suction.')
     call key(t, 'alpha', 'real', '1/m', '*', '(0, 1e4]', &
-             'alpha of van Genuchten or Gardner, per metre of suction head.', &
-             'retention=van_genuchten|gardner')
+             'alpha of van Genuchten or Gardner, or 1/lambda_c of Broadbridge and White, per '// &
+             'metre of suction head.', 'retention=van_genuchten|gardner|broadbridge_white')
     call key(t, 'n', 'real', '', '*', '(1, 20]', 'n of van Genuchten; m = 1 - 1/n.', vg)
     call key(t, 'pore_connectivity', 'real', '', '0.5', '[-10, 10]', &
-             'Exponent of the effective saturation in Mualem''s conductivity.', vg)
+             'Exponent of the effective saturation in Mualem''s conductivity; with Brooks and '// &
+             'Corey 1 gives Burdine''s.', 'retention=van_genuchten|brooks_corey')
     call key(t, 'air_entry_cut', 'real', 'm', '~0.02 for n < 2, else 0', '[0, 10]', &
              'Suction head below which the soil stays saturated.', vg)
     call key(t, 'air_entry', 'real', 'm', '*', '(0, 1e4]', 'Air-entry suction head.', bc)
     call key(t, 'lambda', 'real', '', '*', '(0, 20]', 'Pore-size index of Brooks and Corey.', bc)
+    call key(t, 'c_parameter', 'real', '', '*', '[1.001, 1000]', &
+             'C of Broadbridge and White, above 1: weak to strong nonlinearity as it falls to 1.', &
+             'retention=broadbridge_white')
     call key(t, 'fx_a', 'real', 'm', '*', '(0, 1e5]', 'a of Fredlund and Xing, as a head.', fx)
     call key(t, 'fx_n', 'real', '', '*', '(0, 50]', 'n of Fredlund and Xing.', fx)
     call key(t, 'fx_m', 'real', '', '*', '(0, 50]', 'm of Fredlund and Xing.', fx)

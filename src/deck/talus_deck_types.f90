@@ -69,7 +69,7 @@ module talus_deck_types
   type :: water_t
     character(:), allocatable :: soil, retention
     real(dp) :: conductivity_x, conductivity_y, saturation_residual, saturation_maximum
-    real(dp) :: alpha, n, pore_connectivity, air_entry_cut
+    real(dp) :: alpha, n, pore_connectivity, air_entry_cut, c_parameter
     real(dp) :: air_entry, lambda
     real(dp) :: fx_a, fx_n, fx_m, fx_residual_suction
     character(:), allocatable :: file          !! path that opens from the working folder

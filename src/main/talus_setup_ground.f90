@@ -218,6 +218,7 @@ contains
     retention%alpha = given_or(water%alpha, retention%alpha)
     retention%n = given_or(water%n, retention%n)
     retention%pore_connectivity = given_or(water%pore_connectivity, retention%pore_connectivity)
+    retention%c_parameter = given_or(water%c_parameter, retention%c_parameter)
     retention%air_entry = given_or(water%air_entry, retention%air_entry)
     retention%air_entry_cut = given_or(water%air_entry_cut, retention%air_entry_cut)
     retention%lambda = given_or(water%lambda, retention%lambda)

@@ -34,7 +34,7 @@ contains
   !> Build the weights.
   subroutine two_level_build(two_level, x, area, length, weights, status)
     type(two_level_t), intent(out) :: two_level
-    real(dp), intent(in) :: x(:,:)  !! nodes [m], (2,n)
+    real(dp), contiguous, intent(in) :: x(:,:) !! nodes [m], (2,n)
     real(dp), intent(in) :: area(:) !! cell areas [m2], (n)
     real(dp), intent(in) :: length  !! ell: support radius of the weights [m]
     integer, intent(in) :: weights  !! one of weights_*

@@ -65,7 +65,7 @@ contains
   !> Displacement gradient that the stress sees, (4,n).
   function gradient(disc, u) result(h)
     type(disc_t), intent(in) :: disc
-    real(dp), intent(in) :: u(:,:)
+    real(dp), contiguous, intent(in) :: u(:,:)
     real(dp), allocatable :: h(:,:)
     real(dp), allocatable :: y(:,:)
 

@@ -55,10 +55,8 @@ contains
     !$omp schedule(static)
     do i = 1, disc%n
       soil = disc%soil(i)
-      k = ground%conductivity(:, soil)
       jacobian = state%jacobian(i)
-      if (ground%kozeny_carman(soil)) k = k*permeability_kozeny_carman( &
-        1.0_dp - (1.0_dp - ground%porosity(soil))/jacobian, ground%porosity(soil))
+      k = present_conductivity(ground, soil, jacobian)
       associate (f => state%f(:, i))
         ! F^-1 = [f22, -f12; -f21, f11]/J.
         seepage%tensor(1, i) = (k(1)*f(4)**2 + k(2)*f(2)**2)/jacobian
@@ -243,6 +241,18 @@ contains
     step = 1.0_dp/fastest
   end function seepage_step_limit
 
+  !> Saturated conductivity along x and y at the present porosity [m/s].
+  pure function present_conductivity(ground, soil, jacobian) result(k)
+    type(ground_t), intent(in) :: ground
+    integer, intent(in) :: soil
+    real(dp), intent(in) :: jacobian !! J [-]
+    real(dp) :: k(2)
+
+    k = ground%conductivity(:, soil)
+    if (ground%kozeny_carman(soil)) k = k*permeability_kozeny_carman( &
+      1.0_dp - (1.0_dp - ground%porosity(soil))/jacobian, ground%porosity(soil))
+  end function present_conductivity
+
   !> Darcy velocity at the nodes [m/s], for output.
   subroutine seepage_velocity(disc, ground, state, velocity)
     type(disc_t), intent(in) :: disc
@@ -250,7 +260,7 @@ contains
     type(state_t), intent(in) :: state
     real(dp), intent(out) :: velocity(:,:) !! (2,n)
     real(dp), allocatable :: head(:,:), slope(:,:)
-    real(dp) :: gradient(2)
+    real(dp) :: gradient(2), k(2)
     integer :: i
 
     allocate (head(2, disc%n), slope(4, disc%n))
@@ -262,7 +272,8 @@ contains
         ! Present gradient F^-T grad.
         gradient = [f(4)*g(1) - f(3)*g(2), f(1)*g(2) - f(2)*g(1)]/state%jacobian(i)
       end associate
-      velocity(:, i) = -state%ratio(i)*ground%conductivity(:, disc%soil(i))*gradient
+      k = present_conductivity(ground, disc%soil(i), state%jacobian(i))
+      velocity(:, i) = -state%ratio(i)*k*gradient
     end do
   end subroutine seepage_velocity
 end module talus_darcy

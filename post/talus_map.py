@@ -103,10 +103,13 @@ class FieldMap:
         if self._contour is not None:
             self._contour.remove()
             self._contour = None
-        if isinstance(self.scale.norm, TwoSlopeNorm) and values.min() < 0.0 < values.max():
-            self._contour = self.axes.tricontour(
-                *positions.T, self.result.triangles(), values, [0.0], colors=[INK], linewidths=1.0
-            )
+        if isinstance(self.scale.norm, TwoSlopeNorm):
+            # A hair above zero: round a rained-on surface pressure is zero to round-off.
+            level = 0.01 * (self.scale.norm.vmax - self.scale.norm.vmin)
+            if values.min() < level < values.max():
+                self._contour = self.axes.tricontour(
+                    *positions.T, self.result.triangles(), values, [level], colors=[INK], linewidths=1.0
+                )
         return self._cells
 
 

@@ -29,8 +29,10 @@ module talus_stages
   integer, parameter :: relax_chunk = 500
   !> History lines of a dynamic stage when the deck does not say.
   integer, parameter :: dynamic_lines = 200
-  !> Real-time steps between two looks at the stable step.
-  integer(i8), parameter :: refresh_every = 250_i8
+  !> Real-time steps between two looks at how far the soil has moved; the stable step is found again
+  !> when that is more than this part of the node spacing, and with moving pore water now and then.
+  integer(i8), parameter :: look_every = 20_i8, refresh_every = 240_i8
+  real(dp), parameter :: refresh_travel = 0.02_dp
 
 contains
 
@@ -271,11 +273,13 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
+    real(dp) :: travelled
     real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval, speed
     integer :: failed
 
     done = 0.0_dp
     since_water = 0.0_dp
+    travelled = 0.0_dp
     line_interval = stage%duration/real(dynamic_lines, dp)
     if (deck_given(session%deck%output%history_interval)) &
       line_interval = session%deck%output%history_interval
@@ -291,8 +295,7 @@ contains
       session%motion%coupled, session%state, session%work, failed)
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
-      if (modulo(session%state%steps, refresh_every) == 0_i8) call motion_refresh(session%disc, &
-        session%ground, session%state, session%motion, session%work)
+      call look_at_step(session, travelled)
       if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
       call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
       call timer_stop(session%timer, 'soil')
@@ -325,6 +328,23 @@ contains
     end do
     call record_snapshot(session, status)
   end subroutine run_dynamic
+
+  !> Find the stable step again where the soil has moved enough to change it.
+  subroutine look_at_step(session, travelled)
+    type(session_t), intent(inout) :: session
+    real(dp), intent(inout) :: travelled !! bound of the motion since the last time [m]
+    real(dp) :: spacing
+
+    associate (disc => session%disc, state => session%state, motion => session%motion)
+      if (modulo(state%steps, look_every) /= 0_i8) return
+      travelled = travelled + real(look_every, dp)*motion%step*sqrt(maxval(sum(state%v**2, dim=1)))
+      spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
+      if (travelled < refresh_travel*spacing .and. .not. (motion%coupled .and. &
+          modulo(state%steps, refresh_every) == 0_i8)) return
+      call motion_refresh(disc, session%ground, state, motion, session%work)
+      travelled = 0.0_dp
+    end associate
+  end subroutine look_at_step
 
   !> Time between two moves of the water in real time [s]: its stable step, or a hundredth of the
   !> stage, but one soil step at least.

@@ -240,7 +240,7 @@ contains
     call take_load(session)
     call timer_start(session%timer, 'soil')
     ! Soil that the storm has filled with water is stiffer than before.
-    if (session%motion%coupled) call motion_prepare(session%disc, session%ground, &
+    if (session%motion%stiffens) call motion_prepare(session%disc, session%ground, &
       session%conditions, session%state, stage%mass_scaling, stage%step_safety, session%motion, &
       session%work)
     moved_max = huge(1.0_dp)
@@ -339,7 +339,7 @@ contains
       if (modulo(state%steps, look_every) /= 0_i8) return
       travelled = travelled + real(look_every, dp)*motion%step*sqrt(maxval(sum(state%v**2, dim=1)))
       spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
-      if (travelled < refresh_travel*spacing .and. .not. (motion%coupled .and. &
+      if (travelled < refresh_travel*spacing .and. .not. (motion%stiffens .and. &
           modulo(state%steps, refresh_every) == 0_i8)) return
       call motion_refresh(disc, session%ground, state, motion, session%work)
       travelled = 0.0_dp

@@ -9,6 +9,7 @@ module talus_relax
   use talus_conditions, only: conditions_t
   use talus_soil_step, only: work_t, motion_t, soil_step, soil_force
   use talus_time_step, only: time_step_stable, water_bulk_modulus
+  use talus_soil_law, only: stress_bishop
   use talus_sum, only: sum_products
   use talus_audit, only: audit_driven
   implicit none
@@ -20,8 +21,8 @@ module talus_relax
 
   !> Steps between two looks at the balance.
   integer, parameter :: look_every = 25
-  !> Steps between two looks at the stable step where the pore water moves with the soil: soil that
-  !> fills with water becomes stiff.
+  !> Steps between two looks at the stable step where pore water carries load: soil that fills with
+  !> water becomes stiff.
   integer, parameter :: refresh_every = 250
 
   type :: relax_t
@@ -69,7 +70,7 @@ contains
       motion%mobility(:, i) = merge(0.0_dp, 1.0_dp/mass(i), conditions%held(:, i))
     end do
     motion%safety = safety
-    if (allocated(motion%mode)) deallocate (motion%mode)
+    motion%stiffens = motion%coupled .and. any(ground%law%stress == stress_bishop)
     motion%step = huge(1.0_dp)
     call motion_refresh(disc, ground, state, motion, work)
     ! Without a node that can move, any step will do.
@@ -143,7 +144,7 @@ contains
         outcome%outcome = relax_moving
         return
       end if
-      if (motion%coupled .and. modulo(outcome%steps, refresh_every) == 0) &
+      if (motion%stiffens .and. modulo(outcome%steps, refresh_every) == 0) &
         call motion_refresh(disc, ground, state, motion, work)
     end do
   end subroutine relax

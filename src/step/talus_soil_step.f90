@@ -39,6 +39,7 @@ module talus_soil_step
     real(dp) :: viscous = 0.0_dp           !! viscous damping [1/s]
     real(dp) :: safety = 1.0_dp            !! step over stable step
     logical :: coupled = .false.           !! pore pressure follows the soil
+    logical :: stiffens = .false.          !! and that may stiffen the soil
     real(dp), allocatable :: mode(:,:)     !! fastest mode when last looked for, (2,n)
     real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
   end type motion_t

@@ -28,6 +28,7 @@ module talus_audit
     real(dp) :: stabilisation = 0.0_dp !! stored there, and lost as the soil softened
     real(dp) :: damping = 0.0_dp       !! taken by local damping
     real(dp) :: external = 0.0_dp      !! work of weight, tractions and driven nodes
+    real(dp) :: motion = 0.0_dp        !! 1/2 m v(n+1/2)^2: only to scale errors at the very start
   end type energies_t
 
 contains
@@ -52,12 +53,17 @@ contains
     do i = 1, disc%n
       damage = 0.0_dp
       if (damages) damage = state%history(history_damage, i)
-      density(i) = soil_stored_energy(ground%law(disc%soil(i)), state%stress(:, i), damage) &
-        *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i))
+      associate (law => ground%law(disc%soil(i)), stress => state%stress(:, i))
+        ! The rate law stores J sigma:D, which is not the change of J e at finite strain: a third
+        ! of the elastic change of volume makes up the first order of the difference.
+        density(i) = soil_stored_energy(law, stress, damage) &
+          *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i)) &
+          *(1.0_dp - (stress(1) + stress(2) + stress(3))/(9.0_dp*law%elastic%bulk))
+      end associate
     end do
     !$omp end parallel do
     energies%strain = sum_products(disc%n, density, disc%dual%area)
-    energies%kinetic = kinetic_energy(disc%n, motion, state)
+    call kinetic_energy(disc%n, motion, state, energies%kinetic, energies%motion)
     if (allocated(state%history)) then
       density = state%history(history_plastic_work, :)
       energies%plastic = sum_products(disc%n, density, disc%dual%area)
@@ -74,11 +80,12 @@ contains
     energies%external = state%external + load_work(disc%n, state)
   end function audit_energies
 
-  !> 1/2 m v(n-1/2).v(n+1/2) over the nodes that can move.
-  real(dp) function kinetic_energy(n, motion, state) result(energy)
+  !> 1/2 m v(n-1/2).v(n+1/2) over the nodes that can move, and 1/2 m v(n+1/2)^2.
+  subroutine kinetic_energy(n, motion, state, energy, ahead)
     integer, intent(in) :: n
     type(motion_t), intent(in) :: motion
     type(state_t), intent(in) :: state
+    real(dp), intent(out) :: energy, ahead !! [J/m]
     real(dp), allocatable :: momentum(:,:)
 
     allocate (momentum(2, n))
@@ -86,7 +93,9 @@ contains
     where (motion%mobility > 0.0_dp) &
       momentum = (state%v - motion%step*state%acceleration)/motion%mobility
     energy = 0.5_dp*sum_products(2*n, momentum, state%v)
-  end function kinetic_energy
+    where (motion%mobility > 0.0_dp) momentum = state%v/motion%mobility
+    ahead = 0.5_dp*sum_products(2*n, momentum, state%v)
+  end subroutine kinetic_energy
 
   !> Work of the present load since it was set.
   real(dp) function load_work(n, state)
@@ -134,7 +143,8 @@ contains
               now%damage - start%damage, now%water - start%water, &
               now%stabilisation - start%stabilisation, now%damping - start%damping]
     work = now%external - start%external
-    scale = max(abs(work), maxval(abs(change)), held_share*max(now%strain, abs(now%external)))
+    scale = max(abs(work), maxval(abs(change)), held_share*max(now%strain, abs(now%external)), &
+                now%motion)
     error = 0.0_dp
     if (scale > 0.0_dp) error = (sum(change) - work)/scale
   end function audit_energy_error

@@ -2,7 +2,7 @@
 !> `talus check`: the resolved deck, what will be active and what it costs, without stepping.
 module talus_check
   use, intrinsic :: iso_fortran_env, only: output_unit
-  use talus_kinds, only: dp
+  use talus_kinds, only: dp, i8
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_deck_types, only: deck_t
@@ -11,11 +11,11 @@ module talus_check
   use talus_setup_conditions, only: setup_conditions
   use talus_relax, only: motion_prepare
   use talus_soil_step, only: soil_step
-  use talus_seepage, only: seepage_shape, face_fluxes, seepage_step_limit
+  use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_initial, only: weight_load
   use talus_audit, only: audit_load
   use talus_timer, only: timer_now
-  use talus_report, only: peak_memory_bytes
+  use talus_cost, only: cost_t, cost_of
   use talus_spectrum, only: spectrum_frequencies, spectrum_most_nodes
   implicit none
   private
@@ -32,18 +32,20 @@ contains
     logical, intent(in) :: spectrum !! also all eigenvalues, of a small model
     type(status_t), intent(inout) :: status
     type(session_t) :: session
+    real(dp) :: total
     integer :: i
 
     call run_prepare(deck, session, status)
     if (status_failed(status)) return
     write (output_unit, '(a)') deck%resolved
     call print_model(session)
+    total = 0.0_dp
     do i = 1, size(deck%stage)
-      call print_stage(session, i, spectrum, status)
+      call print_stage(session, i, spectrum, total, status)
       if (status_failed(status)) return
     end do
-    write (output_unit, '(2a)') 'memory now                ', &
-      text_of(real(peak_memory_bytes(), dp)/1.0e6_dp, 4)//' MB'
+    write (output_unit, '(/,2a)') 'estimated run time        ', text_of(total, 3)// &
+      ' s on this machine, within a factor of about 3'
   end subroutine check_deck
 
   !> Size and active parts.
@@ -54,19 +56,67 @@ contains
       write (output_unit, '(a)') 'What will be active'
       write (output_unit, '(2a)') 'nodes                     ', text_of(disc%n)
       write (output_unit, '(2a)') 'area                      ', text_of(sum(disc%dual%area))//' m2'
-      write (output_unit, '(2a)') 'first-level neighbours    ', &
-        text_of(real(size(disc%scni%node), dp)/real(disc%n, dp), 4)//' a node'
-      if (disc%two_levels) write (output_unit, '(2a)') 'second-level neighbours   ', &
-        text_of(real(size(disc%two_level%cell), dp)/real(disc%n, dp), 4)//' a node'
+      call neighbours('first-level neighbours', disc%scni%cell_offset)
+      if (disc%two_levels) call neighbours('second-level neighbours', disc%two_level%offset)
       call part('second level of smoothing', disc%two_levels)
       call part('stabilisation', disc%stabilised)
       call part('plasticity', any(session%ground%law%plasticity /= 0))
       call part('damage', any(session%ground%law%damage%driver /= 0))
       call part('water', session%ground%wet)
       call part('Bishop stress', any(session%ground%law%stress == 2))
-      write (output_unit, '(2a)') 'bytes of state a node     ', text_of(state_bytes(session))
     end associate
+    call print_bytes(session)
   end subroutine print_model
+
+  !> Neighbours of a list: least, mean and most.
+  subroutine neighbours(name, offset)
+    character(*), intent(in) :: name
+    integer, intent(in) :: offset(:) !! first entry of each node, (n+1)
+    character(26) :: label
+    integer :: n
+
+    n = size(offset) - 1
+    label = name
+    write (output_unit, '(7a)') label, text_of(real(offset(n+1) - 1, dp)/real(n, dp), 3), &
+      ' a node, from ', text_of(minval(offset(2:) - offset(:n))), ' to ', &
+      text_of(maxval(offset(2:) - offset(:n)))
+  end subroutine neighbours
+
+  !> Memory of the run by its parts.
+  subroutine print_bytes(session)
+    type(session_t), intent(in) :: session
+    type(cost_t) :: cost
+
+    cost = cost_of(session)
+    write (output_unit, '(5a)') 'memory                    ', megabytes(cost%total), ', ', &
+      text_of(int(cost%total/int(session%disc%n, i8))), ' bytes a node'
+    call line('nodes and cells', cost%cells)
+    call line('first level', cost%first)
+    call line('second level', cost%second)
+    call line('stabilisation', cost%stabilise)
+    call line('state and its copy', cost%state)
+    call line('within a step', cost%step)
+    call line('seepage', cost%seepage)
+
+  contains
+
+    subroutine line(name, bytes)
+      character(*), intent(in) :: name
+      integer(i8), intent(in) :: bytes
+      character(24) :: label
+
+      if (bytes == 0_i8) return
+      label = name
+      write (output_unit, '(3a)') '  ', label, megabytes(bytes)
+    end subroutine line
+
+    pure function megabytes(bytes) result(text)
+      integer(i8), intent(in) :: bytes
+      character(:), allocatable :: text
+
+      text = text_of(real(bytes, dp)/1.0e6_dp, 3)//' MB'
+    end function megabytes
+  end subroutine print_bytes
 
   subroutine part(name, active)
     character(*), intent(in) :: name
@@ -77,32 +127,14 @@ contains
     write (output_unit, '(2a)') label, trim(merge('on ', 'off', active))
   end subroutine part
 
-  !> Bytes a node takes in the state and the operators: 8 a real, 4 an index.
-  integer function state_bytes(session) result(bytes)
-    type(session_t), intent(in) :: session
-    integer :: reals, first
-
-    associate (state => session%state, disc => session%disc)
-      first = size(disc%scni%node)/disc%n
-      reals = 12 + 4 + 4 + 2 + 12 + 4 + 4*first
-      if (allocated(state%strain)) reals = reals + 4
-      if (allocated(state%history)) reals = reals + size(state%history, 1)
-      if (allocated(state%content)) reals = reals + 8
-      if (disc%stabilised) reals = reals + 4
-      bytes = 8*reals + 4*2*first
-      if (disc%two_levels) bytes = bytes + 12*(size(disc%two_level%cell)/disc%n)
-      if (disc%stabilised) bytes = bytes + 28*(size(disc%stabilise%node)/disc%n)
-    end associate
-  end function state_bytes
-
   !> Steps and estimated time of one stage, from a few trial steps on a copy of the state.
-  subroutine print_stage(session, number, spectrum, status)
+  subroutine print_stage(session, number, spectrum, total, status)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
+    real(dp), intent(inout) :: total !! time of the stages so far [s]
     type(status_t), intent(inout) :: status
-    real(dp) :: began, each, steps, estimate
-    integer :: i, failed
+    real(dp) :: each, steps, estimate
 
     associate (stage => session%deck%stage(number))
       write (output_unit, '(/,5a)') 'stage ', stage%name, ' (', stage%kind, ', '//stage%solve//')'
@@ -119,24 +151,37 @@ contains
                      stage%mass_scaling))
         if (spectrum) call print_spectrum(session)
         session%motion%step = stage%step_safety*session%motion%step
-        call audit_load(session%disc%n, weight_load(session%ground, session%state%mass, &
-                                                    session%conditions%traction), session%state)
-        session%last_good = session%state
-        began = timer_now()
-        do i = 1, trial_steps
-          call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
-                         failed)
-        end do
-        each = (timer_now() - began)/real(trial_steps, dp)
-        session%state = session%last_good
+        each = time_of_a_step(session)
         steps = typical_steps(session, number)
         write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
         estimate = steps*each
       end if
       if (stage%solve /= 'soil') call print_seepage(session, number, estimate)
-      write (output_unit, '(2a)') '  estimated run time      ', text_of(estimate, 3)//' s'
+      write (output_unit, '(2a)') '  estimated run time      ', text_of(estimate, 3)//' s'// &
+        trim(merge(', if it is reached', '                  ', stage%only_after_failure))
+      total = total + estimate
     end associate
   end subroutine print_stage
+
+  !> Time of a soil step [s], from a few under load that are taken back.
+  real(dp) function time_of_a_step(session) result(each)
+    type(session_t), intent(inout) :: session
+    real(dp) :: began
+    integer :: i, failed
+
+    call audit_load(session%disc%n, weight_load(session%ground, session%state%mass, &
+                                                session%conditions%traction), session%state)
+    session%last_good = session%state
+    began = timer_now()
+    do i = 0, trial_steps
+      ! The first step warms up.
+      if (i == 1) began = timer_now()
+      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
+                     failed)
+    end do
+    each = (timer_now() - began)/real(trial_steps, dp)
+    session%state = session%last_good
+  end function time_of_a_step
 
   !> Soil steps of a stage: exact for real time, by experience for a relaxation.
   real(dp) function typical_steps(session, number) result(steps)
@@ -148,37 +193,40 @@ contains
     associate (stage => session%deck%stage(number))
       select case (stage%kind)
       case ('geostatic')
-        steps = 40.0_dp*across
+        steps = 25.0_dp + 7.0_dp*across
       case ('storm')
-        steps = 10.0_dp*across*stage%duration/stage%storm_step
+        steps = (25.0_dp + 0.6_dp*across)*stage%duration/stage%storm_step
       case default
         steps = stage%duration/session%motion%step
       end select
     end associate
   end function typical_steps
 
-  !> Sub-steps of the water and their time, from the state at the start.
+  !> Sub-steps of the water and their time, from a trial with the state at the start: one step of
+  !> the storm clock, or a hundredth of a dynamic stage.
   subroutine print_seepage(session, number, estimate)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     real(dp), intent(inout) :: estimate !! of the stage so far [s]
-    real(dp) :: began, limit, each
-    integer :: i
+    real(dp) :: began, limit, trial
+    integer(i8) :: before
 
     associate (seepage => session%seepage, disc => session%disc, ground => session%ground, &
                state => session%state, stage => session%deck%stage(number))
+      trial = 0.01_dp*stage%duration
+      if (stage%kind == 'storm') trial = stage%storm_step
       call seepage_shape(seepage, disc, ground, session%conditions%inlets, state)
+      call face_fluxes(seepage, disc, ground, state)
+      limit = seepage_step_limit(seepage, disc, ground, state)
+      session%last_good = state
+      before = state%seepage_steps
       began = timer_now()
-      do i = 1, trial_steps
-        call face_fluxes(seepage, disc, ground, state)
-        limit = seepage_step_limit(seepage, disc, ground, state)
-      end do
-      ! Fluxes and limit are about half of a sub-step.
-      each = 2.0_dp*(timer_now() - began)/real(trial_steps, dp)
-      write (output_unit, '(2a)') '  stable seepage step     ', text_of(limit, 4)//' s at the start'
-      write (output_unit, '(2a)') '  seepage steps, at least ', &
-        text_of(max(1.0_dp, stage%duration/limit), 3)
-      estimate = estimate + each*stage%duration/limit
+      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state)
+      estimate = estimate + (timer_now() - began)*stage%duration/trial
+      write (output_unit, '(2a)') '  explicit seepage step   ', text_of(limit, 4)//' s at the start'
+      write (output_unit, '(2a)') '  seepage steps, about    ', &
+        text_of(real(state%seepage_steps - before, dp)*stage%duration/trial, 3)
+      state = session%last_good
     end associate
   end subroutine print_seepage
 

@@ -1,0 +1,106 @@
+! SPDX-License-Identifier: MIT
+!> Bytes that a run holds, counted from what is allocated.
+module talus_cost
+  use talus_kinds, only: dp, i8
+  use talus_session, only: session_t
+  use talus_state, only: state_t
+  implicit none
+  private
+  public :: cost_t, cost_of
+
+  !> Bytes of the parts of a run.
+  type :: cost_t
+    integer(i8) :: cells = 0_i8     !! nodes, grid and nodal cells
+    integer(i8) :: first = 0_i8     !! first level and its adjoint
+    integer(i8) :: second = 0_i8    !! second level
+    integer(i8) :: stabilise = 0_i8 !! pairs of the stabilisation
+    integer(i8) :: state = 0_i8     !! fields, and their copy to fall back on
+    integer(i8) :: step = 0_i8      !! fields within a step, and of the motion
+    integer(i8) :: seepage = 0_i8   !! fluxes, and the band matrix of an implicit step
+    integer(i8) :: total = 0_i8
+  end type cost_t
+
+  !> Bytes of an array, 0 when it is not allocated.
+  interface bytes
+    module procedure bytes_real_1, bytes_real_2, bytes_integer_1, bytes_integer_2
+  end interface bytes
+
+contains
+
+  !> Count the bytes of a session that is ready to run.
+  pure function cost_of(session) result(cost)
+    type(session_t), intent(in) :: session
+    type(cost_t) :: cost
+    integer(i8) :: band
+
+    associate (disc => session%disc, work => session%work)
+      associate (mesh => disc%mesh, dual => disc%dual, scni => disc%scni)
+        cost%cells = bytes(mesh%x) + bytes(mesh%element_offset) + bytes(mesh%element_nodes) &
+          + bytes(mesh%boundary_edge) + bytes(mesh%boundary_tag) + bytes(disc%soil) &
+          + bytes(dual%area) + bytes(dual%segment_cell) + bytes(dual%segment_normal) &
+          + bytes(dual%segment_mid) + bytes(dual%cell_offset) + bytes(dual%cell_segment) &
+          + bytes(dual%half_offset) + bytes(dual%half_node) + bytes(dual%half_edge) &
+          + bytes(dual%half_normal) + bytes(dual%half_mid) + bytes(dual%edge_node) &
+          + bytes(dual%edge_normal) + bytes(dual%node_offset) + bytes(dual%node_neighbour) &
+          + bytes(dual%node_edge) + bytes(dual%node_sign)
+        cost%first = bytes(scni%cell_offset) + bytes(scni%node) + bytes(scni%b) &
+          + bytes(scni%node_offset) + bytes(scni%cell) + bytes(scni%bt)
+        band = int(maxval(abs(dual%edge_node(2, :) - dual%edge_node(1, :))), i8)
+      end associate
+      cost%second = bytes(disc%two_level%offset) + bytes(disc%two_level%cell) &
+        + bytes(disc%two_level%s) + bytes(disc%two_level%sa)
+      cost%stabilise = bytes(disc%stabilise%offset) + bytes(disc%stabilise%node) &
+        + bytes(disc%stabilise%reach) + bytes(disc%stabilise%stiffness)
+      cost%state = 2_i8*state_bytes(session%state)
+      cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
+        + bytes(work%stabilising) + bytes(work%force) + 32_i8*int(disc%n, i8)
+      ! Eleven numbers a face and six a node besides the matrix.
+      if (session%ground%wet) cost%seepage = 8_i8*(11_i8*int(size(disc%dual%edge_node, 2), i8) &
+        + (6_i8 + 3_i8*band + 1_i8)*int(disc%n, i8))
+    end associate
+    cost%total = cost%cells + cost%first + cost%second + cost%stabilise + cost%state + cost%step &
+      + cost%seepage
+  end function cost_of
+
+  !> Bytes of a state.
+  pure integer(i8) function state_bytes(state) result(total)
+    type(state_t), intent(in) :: state
+
+    total = bytes(state%u) + bytes(state%u_zero) + bytes(state%v) + bytes(state%acceleration) &
+      + bytes(state%f) + bytes(state%f_drive) + bytes(state%stress) + bytes(state%strain) &
+      + bytes(state%history) + bytes(state%stiffness) + bytes(state%stiffness_old) &
+      + bytes(state%stabilising) + bytes(state%stabilising_lost) + bytes(state%damped) &
+      + bytes(state%mass) + bytes(state%load) + bytes(state%u_load) + bytes(state%jacobian) &
+      + bytes(state%content) + bytes(state%pressure) + bytes(state%saturation) &
+      + bytes(state%ratio) + bytes(state%potential) + bytes(state%capacity) &
+      + bytes(state%suction) + bytes(state%water_work)
+  end function state_bytes
+
+  pure integer(i8) function bytes_real_1(values) result(total)
+    real(dp), allocatable, intent(in) :: values(:)
+
+    total = 0_i8
+    if (allocated(values)) total = 8_i8*size(values, kind=i8)
+  end function bytes_real_1
+
+  pure integer(i8) function bytes_real_2(values) result(total)
+    real(dp), allocatable, intent(in) :: values(:,:)
+
+    total = 0_i8
+    if (allocated(values)) total = 8_i8*size(values, kind=i8)
+  end function bytes_real_2
+
+  pure integer(i8) function bytes_integer_1(values) result(total)
+    integer, allocatable, intent(in) :: values(:)
+
+    total = 0_i8
+    if (allocated(values)) total = 4_i8*size(values, kind=i8)
+  end function bytes_integer_1
+
+  pure integer(i8) function bytes_integer_2(values) result(total)
+    integer, allocatable, intent(in) :: values(:,:)
+
+    total = 0_i8
+    if (allocated(values)) total = 4_i8*size(values, kind=i8)
+  end function bytes_integer_2
+end module talus_cost

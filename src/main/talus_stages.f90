@@ -13,7 +13,7 @@ module talus_stages
   use talus_setup_conditions, only: setup_conditions
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
-  use talus_relax, only: relax_t, relax, motion_prepare, motion_refresh, largest_motion, relax_balanced, &
+  use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, relax_balanced, &
     relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
@@ -143,7 +143,9 @@ contains
                  session%state, session%work, outcome)
       done = done + outcome%steps
       if (outcome%outcome == relax_broken) call fail(session, outcome%failed, status)
-      call record_line(session, real(done, dp)/real(stage%steps_max, dp), status)
+      ! Relaxation brings the force down by a constant factor a step.
+      call record_line(session, min(1.0_dp, log(max(outcome%ratio, stage%tolerance)) &
+                                            /log(stage%tolerance)), status)
       if (outcome%outcome == relax_balanced) return
       if (done < stage%steps_max .or. status_failed(status)) cycle
       session%last_good = session%state
@@ -341,7 +343,7 @@ contains
       spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
       if (travelled < refresh_travel*spacing .and. .not. (motion%stiffens .and. &
           modulo(state%steps, refresh_every) == 0_i8)) return
-      call motion_refresh(disc, session%ground, state, motion, session%work)
+      call motion_shorten(disc, session%ground, state, motion, session%work)
       travelled = 0.0_dp
     end associate
   end subroutine look_at_step

@@ -14,7 +14,7 @@ module talus_relax
   use talus_audit, only: audit_driven
   implicit none
   private
-  public :: relax_t, relax, motion_prepare, motion_refresh, unbalanced_ratio, largest_motion
+  public :: relax_t, relax, motion_prepare, motion_shorten, unbalanced_ratio, largest_motion
 
   integer, parameter, public :: relax_balanced = 0, relax_moving = 1, relax_exhausted = 2, &
     relax_broken = 3
@@ -95,6 +95,21 @@ contains
       motion%step = min(motion%step, motion%safety*stable/sqrt(1.0_dp + motion%local))
   end subroutine motion_refresh
 
+  !> The same while the soil moves. The velocity half a step ahead becomes that of the shorter step,
+  !> which keeps the energy.
+  subroutine motion_shorten(disc, ground, state, motion, work)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(inout) :: state
+    type(motion_t), intent(inout) :: motion
+    type(work_t), intent(inout) :: work
+    real(dp) :: before
+
+    before = motion%step
+    call motion_refresh(disc, ground, state, motion, work)
+    state%v = state%v + 0.5_dp*(motion%step - before)*state%acceleration
+  end subroutine motion_shorten
+
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
   !> moved by more than `moved_max`, or `steps_max` steps were taken. Driven nodes first travel as
   !> far as their velocity takes them in `travel` seconds, and are then held.
@@ -145,7 +160,7 @@ contains
         return
       end if
       if (motion%stiffens .and. modulo(outcome%steps, refresh_every) == 0) &
-        call motion_refresh(disc, ground, state, motion, work)
+        call motion_shorten(disc, ground, state, motion, work)
     end do
   end subroutine relax
 

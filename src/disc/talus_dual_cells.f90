@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Median-dual nodal cells (src/THEORY.md section 4). In each element, segments from the edge
+!> Median-dual nodal cells (src/THEORY.md section 4.1). In each element, segments from the edge
 !> midpoints to the mean of its nodes separate the cells of the edges' end nodes; on the boundary,
 !> each half of an edge belongs to the cell of its nearer end. Cells tile the domain exactly.
 !>

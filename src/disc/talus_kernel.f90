@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The kernel of the method: the cubic B-spline (src/THEORY.md section 4; Liu, Jun & Zhang 1995).
+!> The kernel of the method: the cubic B-spline (src/THEORY.md (4.1); Liu, Jun & Zhang 1995).
 module talus_kernel
   use talus_kinds, only: dp
   implicit none

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes, the grid that comes with them, and its boundary (src/THEORY.md section 4).
+!> Nodes, the grid that comes with them, and its boundary (src/THEORY.md section 4.1).
 !> The grid serves to build the nodal cells and to draw pictures; no mesh takes part in stepping.
 module talus_nodes
   use talus_kinds, only: dp

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Reproducing-kernel shape functions with linear basis on the reference configuration
-!> (src/THEORY.md section 4; Liu, Jun & Zhang 1995): Psi_I(X) = H(0)^T M^-1(X) H(X-X_I) phi(X-X_I).
+!> (src/THEORY.md (4.1); Liu, Jun & Zhang 1995): Psi_I(X) = H(0)^T M^-1(X) H(X-X_I) phi(X-X_I).
 module talus_rk_shape
   use talus_kinds, only: dp
   use talus_kernel, only: kernel_spline

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> First level: stabilised conforming nodal integration (src/THEORY.md section 4; Chen, Wu, Yoon &
+!> First level: stabilised conforming nodal integration (src/THEORY.md (4.2)-(4.5); Chen, Wu, Yoon &
 !> You 2001). The gradient at node L is the closed integral of Psi N over the boundary of its cell,
 !> divided by the cell's area. Each inner segment is seen with the same values from both sides, and
 !> on the outer boundary the trace is the straight line between the two nodes of the edge, so that

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Affine-residual stabilisation (src/THEORY.md section 4). Nodal integration does not see some
+!> Affine-residual stabilisation (src/THEORY.md (4.9), (4.10)). Nodal integration does not see some
 !> deformations; on every edge I-K of the nodes' grid the residual
 !>   r = x_K - x_I - (F_I + F_K)/2 (X_K - X_I)
 !> does, and vanishes in every affine motion. Its energy is kappa |r|^2/2,

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Second level of the gradient smoothing (src/THEORY.md section 4; Wang & Li 2013). The gradient of
-!> the first level is averaged once more, over a physical length ell: F = W F1. With the default
+!> Second level of the gradient smoothing (src/THEORY.md (4.6), (4.7); Wang & Li 2013). The gradient
+!> of the first level is averaged once more, over a physical length ell: F = W F1. With the default
 !> weights W = S A, S symmetric, every row sum one: constant strain is kept and the integration
 !> constraint of the first level is kept exactly, and the adjoint is the same operator.
 module talus_two_level

@@ -45,7 +45,7 @@ contains
       if (status_failed(status)) return
     end do
     write (output_unit, '(/,2a)') 'estimated run time        ', text_of(total, 3)// &
-      ' s on this machine, within a factor of about 3'
+      ' s on this machine, within a factor of about 3 (more where a storm ends in failure)'
   end subroutine check_deck
 
   !> Size and active parts.
@@ -195,7 +195,7 @@ contains
       case ('geostatic')
         steps = 25.0_dp + 7.0_dp*across
       case ('storm')
-        steps = (25.0_dp + 0.6_dp*across)*stage%duration/stage%storm_step
+        steps = (25.0_dp + across)*stage%duration/stage%storm_step
       case default
         steps = stage%duration/session%motion%step
       end select

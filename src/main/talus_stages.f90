@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The three kinds of stage (src/THEORY.md section 5, two clocks): each is the ordered list of what
-!> happens; the work is in step/.
+!> The three kinds of stage (src/THEORY.md sections 5.3, 5.6 and 5.7): each is the ordered list of
+!> what happens; the work is in step/.
 module talus_stages
   use talus_kinds, only: dp, i8
   use talus_status, only: status_t, status_set, status_failed, status_numeric
@@ -197,7 +197,7 @@ contains
       if (status_failed(status)) return
       if (.not. stands) then
         if (step > stage%storm_step_minimum) then
-          session%state = session%last_good
+          call take_back(session)
           step = max(0.5_dp*step, stage%storm_step_minimum)
           cycle
         end if
@@ -205,7 +205,7 @@ contains
         if (.not. session%failed) session%trigger_time = session%last_good%time
         session%failed = .true.
         ! The water of the failing step stays: the slide starts out of balance.
-        session%state = session%last_good
+        call take_back(session)
         if (stage%solve /= 'soil') call move_water(session, stage, step)
         session%state%time = session%last_good%time + step
         call progress_say(session%progress, 'equilibrium lost after '// &
@@ -360,6 +360,18 @@ contains
     interval = seepage_step_limit(session%seepage, session%disc, session%ground, session%state)
     interval = max(session%motion%step, min(interval, 0.01_dp*stage%duration))
   end function water_pace
+
+  !> Return to the last good state; the steps in vain are counted all the same.
+  subroutine take_back(session)
+    type(session_t), intent(inout) :: session
+    integer(i8) :: steps, seepage_steps
+
+    steps = session%state%steps
+    seepage_steps = session%state%seepage_steps
+    session%state = session%last_good
+    session%state%steps = steps
+    session%state%seepage_steps = seepage_steps
+  end subroutine take_back
 
   !> True when a time is reached, but for round-off.
   pure logical function is_due(time, due)

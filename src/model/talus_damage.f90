@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Isotropic damage driven by strain (src/THEORY.md section 3).
+!> Isotropic damage driven by strain (src/THEORY.md (3.10), (3.11)).
 !!
 !! Order at a point: equivalent strain, kappa = max over time, D(kappa) that never decreases,
 !! stress = undamaged stress - D P(undamaged stress), where P takes the whole stress (`full`), its

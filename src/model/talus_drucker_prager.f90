@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Drucker-Prager cone with non-associated flow, apex and tension cut-off.
 !!
-!! f = sqrt(J2) + alpha I1 - k, flow potential sqrt(J2) + alpha_psi I1 (src/THEORY.md section 3;
+!! f = sqrt(J2) + alpha I1 - k, flow potential sqrt(J2) + alpha_psi I1 (src/THEORY.md (3.4)-(3.7);
 !! Drucker & Prager 1952). The plastic strain measure is sqrt(2/3 e_p : e_p) of the deviatoric
 !! plastic strain e_p: a return that only changes the mean stress adds nothing to it.
 module talus_drucker_prager

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Unsaturated flow between two points (src/THEORY.md section 4). The capillary part is the
+!> Unsaturated flow between two points (src/THEORY.md (4.14), (4.15)). The capillary part is the
 !> difference of the matric flux potential, exact for any retention law. The gravity part needs a
 !> conductivity k_g for the face:
 !>

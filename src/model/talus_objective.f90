@@ -3,7 +3,7 @@
 !!
 !! Deformation gradients are stored (11,12,21,22) with F_ij = dx_i/dX_j; symmetric tensors are
 !! stored (xx,yy,zz,xy) with tensorial shear. A rotation is stored as (cos, sin) of
-!! Q = [cos -sin; sin cos]. Equations: src/THEORY.md section 3; Hughes & Winget (1980).
+!! Q = [cos -sin; sin cos]. Equations: src/THEORY.md (3.1), (3.2); Hughes & Winget (1980).
 module talus_objective
   use talus_kinds, only: dp
   implicit none

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Relative conductivity of unsaturated soil, and the effect of porosity on permeability.
 !!
-!! src/THEORY.md section 3. With the effective saturation S_e of `talus_retention`:
+!! src/THEORY.md section 3.6. With the effective saturation S_e of `talus_retention`:
 !!   van Genuchten-Mualem: k_r = S_e^l (1 - (1 - S_e^(1/m))^m)^2, m = 1 - 1/n (Mualem 1976);
 !!   Gardner (1958): k_r = exp(-alpha s);
 !!   Brooks & Corey with Mualem: k_r = S_e^(2 + l + 2/lambda); l = 1 is Burdine's 3 + 2/lambda;

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Water retention laws of one soil: effective saturation as a function of suction.
 !!
-!! src/THEORY.md section 3. Suction s = -p_w [Pa] >= 0; effective saturation S_e in 0..1;
+!! src/THEORY.md section 3.6. Suction s = -p_w [Pa] >= 0; effective saturation S_e in 0..1;
 !! S_r = S_res + (S_max - S_res) S_e. The parameters are those of a deck (heads in metres);
 !! `retention_prepare` checks them and turns them into a `retention_law_t` in pascal.
 !! The laws are exact and slow: loops over nodes use the tables of `talus_water_curve`.

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Water stored in deforming soil, and its inverse (src/THEORY.md section 2): per reference area
+!> Water stored in deforming soil, and its inverse (src/THEORY.md (2.3)): per reference area
 !>   w = pore S_r(p) + J S_s <p>+,   pore = J n = J - 1 + n0.
 !> It rises strictly with pressure, so the stored water gives the pressure, also when saturated.
 module talus_storage

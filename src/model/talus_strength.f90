@@ -2,7 +2,7 @@
 !> Strength of the soil skeleton: softening with plastic strain, and suction.
 !!
 !! Cohesion, friction angle and dilation angle follow the equivalent plastic strain; in net
-!! stress, suction adds cohesion (src/THEORY.md section 3; Vanapalli et al. 1996). Cones that do
+!! stress, suction adds cohesion (src/THEORY.md (3.8); Vanapalli et al. 1996). Cones that do
 !! not change are prepared once, so that sines are taken only while the angles move.
 module talus_strength
   use talus_kinds, only: dp

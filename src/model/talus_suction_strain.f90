@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Swelling and shrinkage under changes of suction in net stress.
 !!
-!! d(eps_s) = -ds/D_s on each normal component, so wetting swells (src/THEORY.md section 3;
+!! d(eps_s) = -ds/D_s on each normal component, so wetting swells (src/THEORY.md (3.9);
 !! Alonso, Gens & Josa 1990). Only suction, the positive part of s, acts.
 module talus_suction_strain
   use talus_kinds, only: dp

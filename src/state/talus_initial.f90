@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Pore pressure, stress and weight at the start (src/THEORY.md section 5, geostatic start).
+!> Pore pressure, stress and weight at the start (src/THEORY.md sections 5.3 and 5.4).
 module talus_initial
   use talus_kinds, only: dp
   use talus_disc, only: disc_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Where energy and water are, and how well they balance (src/THEORY.md section 5, audit).
+!> Where energy and water are, and how well they balance (src/THEORY.md (5.5)-(5.7)).
 !>
 !> Kinetic energy is 1/2 m v(n-1/2).v(n+1/2), the one that central differences conserve. All others
 !> come from the stress and the history of the points, not from nodal forces, so the balance checks

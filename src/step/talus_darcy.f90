@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Darcy fluxes between the nodal cells in their present shape (src/THEORY.md sections 2 and 4): what
+!> Darcy fluxes between the nodal cells in their present shape (src/THEORY.md (4.12)-(4.15)): what
 !> explicit, implicit and steady seepage share. Each face carries one flux that leaves one cell and
 !> enters the other, so water is conserved to round-off.
 module talus_darcy

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Internal force as the adjoint of the strain, gathered by node (src/THEORY.md section 4), and the
-!> motion it causes: central differences with lumped mass (section 5).
+!> Internal force as the adjoint of the strain, gathered by node (src/THEORY.md (4.8)), and the
+!> motion it causes: central differences with lumped mass (5.1).
 module talus_force
   use talus_kinds, only: dp
   use talus_scni, only: scni_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Equilibrium of the soil by damped motion with scaled masses (src/THEORY.md section 5, two clocks).
+!> Equilibrium of the soil by damped motion with scaled masses (src/THEORY.md section 5.2).
 module talus_relax
   use talus_kinds, only: dp
   use talus_const, only: pi

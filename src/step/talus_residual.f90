@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The affine-residual stabilisation at work (src/THEORY.md section 4): forces on both nodes of a
+!> The affine-residual stabilisation at work (src/THEORY.md (4.9)-(4.11)): forces on both nodes of a
 !> pair, and the matching part of their first Piola stress, from one energy.
 module talus_residual
   use talus_kinds, only: dp

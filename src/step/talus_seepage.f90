@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Seepage in storage form (src/THEORY.md sections 2, 4 and 5):
+!> Seepage in storage form (src/THEORY.md (4.16), (5.4)):
 !>
 !>   q = flux through every face         explicit: of the pressures now; implicit: of those to come
 !>   w = w - step (sum q)/A              the same for both, so water is conserved to round-off

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Implicit seepage on the storage form (src/THEORY.md sections 2, 4 and 5): find pressures p so that
+!> Implicit seepage on the storage form (src/THEORY.md section 5.5): find pressures p so that
 !>
 !>   A (w(p) - w_old) rate + net outflow of the faces(p) - supply of the boundary = 0
 !>

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The second level at work: F(L) = sum of S(L,K) A(K) F1(K), and by the same gather its adjoint
-!> R(L) = sum of S(K,L) A(K) P(K) (src/THEORY.md section 4).
+!> R(L) = sum of S(K,L) A(K) P(K) (src/THEORY.md (4.6), (4.8)).
 module talus_smooth
   use talus_kinds, only: dp
   use talus_two_level, only: two_level_t

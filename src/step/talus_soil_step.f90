@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> One explicit step of the soil (src/THEORY.md section 5), the file to read first:
+!> One explicit step of the soil (src/THEORY.md (5.1)), the file to read first:
 !>
 !>   u_n+1   = u_n + dt v_n+1/2                          motion_position
 !>   F_n+1   = 1 + G u_n+1, then W F                     strain_first, smooth_gradient

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> All eigenfrequencies of a small model by LAPACK, to see that no mode is spurious and that the
-!> estimate of the stable step is sharp (src/THEORY.md sections 4 and 5).
+!> estimate of the stable step is sharp (src/THEORY.md sections 4.5 and 5.1).
 module talus_spectrum
   use talus_kinds, only: dp
   use talus_disc, only: disc_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Steady seepage (src/THEORY.md section 5, geostatic start): pseudo-transient continuation (Kelley &
+!> Steady seepage (src/THEORY.md section 5.4): pseudo-transient continuation (Kelley &
 !> Keyes 1998). Implicit steps on the storage form grow until storage no longer matters; Newton's
 !> method without storage finishes. The fluxes are those of the transient seepage, so a run that
 !> starts here stays here while nothing changes.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Deformation gradient at every node, as gathers over reference neighbours (src/THEORY.md section
-!> 4). The loops are orphaned work-sharing: call them inside the parallel region of the step.
+!> Deformation gradient at every node, as gathers over reference neighbours (src/THEORY.md (4.2),
+!> (4.6)). The loops are orphaned work-sharing: call them inside the parallel region of the step.
 !> Tensors that are not symmetric are stored as 11, 12, 21, 22, F_ij = dx_i/dX_j.
 module talus_strain
   use talus_kinds, only: dp

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The constitutive update over all nodes: from the new deformation gradient to area times first
-!> Piola stress (src/THEORY.md sections 3 and 5).
+!> Piola stress (src/THEORY.md sections 3 and 5.1).
 module talus_stress_update
   use talus_kinds, only: dp
   use talus_disc, only: disc_t

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Largest stable step of the soil: 2/omega of the highest eigenfrequency of M^-1 K, found by power
-!> iteration without a matrix (src/THEORY.md section 5). K is the elastic tangent in the present
+!> iteration without a matrix (src/THEORY.md (5.2)). K is the elastic tangent in the present
 !> shape with stabilisation and, where the pore water moves with the soil, its stiffness.
 module talus_time_step
   use talus_kinds, only: dp

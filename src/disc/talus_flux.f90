@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Faces of the nodal cells for seepage (src/THEORY.md (4.12), (4.13)). The flux through the face
-!> between nodes I and K joins the smoothed gradient of both cells with the affine residual of the head:
+!> between nodes I and K joins the smoothed gradient of both cells with the head's affine residual:
 !>
 !>   q = -[ a k_e (h_K - h_I) + k_e rest.(grad h_I + grad h_K)/2 ],  T N = a (X_K - X_I) + rest
 !>

@@ -38,6 +38,7 @@ module talus_state
     real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
     real(dp), allocatable :: stabilising_lost(:) !! lost there as the soil softened [J/m], (n)
+    real(dp), allocatable :: volume_work(:)     !! sum of stored energy dJ [J/m3], (n)
     real(dp), allocatable :: damped(:)          !! taken by local damping [J/m], (n)
     real(dp), allocatable :: mass(:)            !! true, with water [kg/m], (n)
     real(dp), allocatable :: load(:,:)          !! weight and tractions [N/m], (2,n)
@@ -75,7 +76,7 @@ contains
     end do
     allocate (state%u(2, n), state%u_zero(2, n), state%v(2, n), state%acceleration(2, n), &
               state%f(4, n), state%stress(4, n), state%mass(n), state%load(2, n), &
-              state%u_load(2, n), state%damped(n), source=0.0_dp)
+              state%u_load(2, n), state%damped(n), state%volume_work(n), source=0.0_dp)
     state%f(1, :) = 1.0_dp
     state%f(4, :) = 1.0_dp
     if (strained) allocate (state%strain(4, n), source=0.0_dp)

@@ -54,11 +54,9 @@ contains
       damage = 0.0_dp
       if (damages) damage = state%history(history_damage, i)
       associate (law => ground%law(disc%soil(i)), stress => state%stress(:, i))
-        ! The rate law stores J sigma:D, which is not the change of J e at finite strain: a third
-        ! of the elastic change of volume makes up the first order of the difference.
+        ! What the rate law stores is not the change of J e at finite strain: see volume_work.
         density(i) = soil_stored_energy(law, stress, damage) &
-          *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i)) &
-          *(1.0_dp - (stress(1) + stress(2) + stress(3))/(9.0_dp*law%elastic%bulk))
+          *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i)) - state%volume_work(i)
       end associate
     end do
     !$omp end parallel do

@@ -8,7 +8,7 @@ module talus_stress_update
   use talus_state, only: state_t
   use talus_objective, only: strain_advance, piola_stress
   use talus_soil_law, only: soil_law_t, soil_update, soil_ok, history_size, stress_bishop, &
-    stress_net, bishop_factor, bishop_subtract
+    stress_net, bishop_factor, bishop_subtract, soil_stored_energy, history_damage
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_storage, only: storage_invert
   implicit none
@@ -118,14 +118,21 @@ contains
     type(state_t), intent(inout) :: state
     real(dp), intent(out) :: stress(4)
     integer, intent(out) :: ierr
-    real(dp) :: strain(4), history(history_size), left
+    real(dp) :: strain(4), history(history_size), left, energy
 
     if (allocated(state%strain)) strain = state%strain(:, i)
     if (.not. allocated(state%strain)) strain = 0.0_dp
     history = 0.0_dp
     if (allocated(state%history)) history(:size(state%history, 1)) = state%history(:, i)
+    energy = soil_stored_energy(law, state%stress(:, i), history(history_damage))
     call soil_update(law, state%f(:, i), f_new, suction_old, suction_new, effective, &
                      state%stress(:, i), strain, history, stress, left, ierr)
+    ! A rate law for Cauchy stress works J sigma:D, which is the change of J times the stored energy
+    ! less this.
+    energy = energy + soil_stored_energy(law, state%stress(:, i), history(history_damage))
+    state%volume_work(i) = state%volume_work(i) + 0.5_dp*energy &
+      *(f_new(1)*f_new(4) - f_new(2)*f_new(3) &
+        - state%f(1, i)*state%f(4, i) + state%f(2, i)*state%f(3, i))
     if (allocated(state%strain)) state%strain(:, i) = strain
     if (allocated(state%history)) state%history(:, i) = history(:size(state%history, 1))
     if (allocated(state%stiffness)) then

@@ -5,7 +5,8 @@ module talus_deck_check
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t
   use talus_deck_store, only: store_t
-  use talus_deck_check_model, only: check_geometry, check_nodes, check_smoothing, check_output
+  use talus_deck_check_model, only: check_run, check_geometry, check_nodes, &
+    check_smoothing, check_output
   use talus_deck_check_soil, only: check_soils, check_damages
   use talus_deck_check_water, only: check_waters, check_initial
   use talus_deck_check_boundary, only: check_boundaries
@@ -22,6 +23,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
 
+    call check_run(store, deck, messages)
     call check_geometry(store, deck, messages)
     call check_nodes(store, deck, messages)
     call check_smoothing(store, deck, messages)

@@ -11,12 +11,22 @@ module talus_deck_check_model
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
   private
-  public :: check_geometry, check_nodes, check_smoothing, check_output
+  public :: check_run, check_geometry, check_nodes, check_smoothing, check_output
 
   !> Node counts that take long, and that no memory holds.
   real(dp), parameter :: nodes_many = 1.0e6_dp, nodes_max = 1.0e8_dp
 
 contains
+
+  !> &run: its name is the first part of file names.
+  subroutine check_run(store, deck, messages)
+    type(store_t), intent(in) :: store
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+
+    if (index(deck%run%name, '/') > 0) call complain(store, store_first(store, 'run'), 'name', &
+      'a file name with a slash', messages, 'a name without /; &output directory says where')
+  end subroutine check_run
 
   !> &geometry.
   subroutine check_geometry(store, deck, messages)
@@ -115,6 +125,7 @@ contains
         call complain(store, section, 'acts_on', 'there is no &damage', messages, &
                       '''gradient'' without &damage')
       end if
+      if (smoothing%acts_on == 'damage_only') call check_damage_only
       if (deck%geometry%kind == 'file' .or. .not. deck_given(nodes%spacing)) return
       largest = nodes%spacing
       if (deck_exceeds(nodes%spacing_y, largest)) largest = nodes%spacing_y
@@ -125,6 +136,19 @@ contains
                       ', or a smaller spacing')
       end if
     end associate
+
+  contains
+
+    !> The plastic strain of a point is its own: smoothing the damage driver alone cannot reach it.
+    subroutine check_damage_only
+      integer :: i
+
+      do i = 1, size(deck%damage)
+        if (deck%damage(i)%driver /= 'plastic_strain') return
+      end do
+      if (size(deck%damage) > 0) call warn(store, section, 'acts_on', &
+        'has no effect: damage by plastic_strain is local', messages)
+    end subroutine check_damage_only
   end subroutine check_smoothing
 
   !> &output: probes in the body.

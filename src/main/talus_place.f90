@@ -6,12 +6,12 @@ module talus_place
   use talus_file, only: file_exists
   implicit none
   private
-  public :: place_results
+  public :: place_results, place_folder
 
 contains
 
-  !> Path of the result files without ending. Makes the folder; refuses results that exist unless
-  !> they may be replaced.
+  !> Path of the result files without ending. Refuses results that exist unless they may be
+  !> replaced.
   subroutine place_results(deck, folder, overwrite, base, status)
     type(deck_t), intent(in) :: deck
     character(*), intent(in) :: folder !! asked for on the command line, '' for the deck's
@@ -19,19 +19,25 @@ contains
     character(:), allocatable, intent(out) :: base
     type(status_t), intent(inout) :: status
     character(:), allocatable :: place
-    integer :: failed
 
     place = deck%output%directory
     if (len(folder) > 0) place = folder
-    call execute_command_line("mkdir -p -- '"//quoted(place)//"'", exitstat=failed)
-    if (failed /= 0) then
-      call status_set(status, status_io, 'cannot make the folder '//place)
-      return
-    end if
     base = place//'/'//deck%run%name
     if (file_exists(base//'.h5') .and. .not. overwrite) call status_set(status, status_deck, &
       base//'.h5 exists; nothing was written (allow with --overwrite, or choose --output DIR)')
   end subroutine place_results
+
+  !> Make the folder of the result files.
+  subroutine place_folder(base, status)
+    character(*), intent(in) :: base !! path of the result files without ending
+    type(status_t), intent(inout) :: status
+    integer :: failed
+
+    associate (folder => base(:index(base, '/', back=.true.)))
+      call execute_command_line("mkdir -p -- '"//quoted(folder)//"'", exitstat=failed)
+      if (failed /= 0) call status_set(status, status_io, 'cannot make the folder '//folder)
+    end associate
+  end subroutine place_folder
 
   !> Text safe between single quotes of the shell.
   pure function quoted(text) result(safe)

@@ -2,16 +2,19 @@
 !> A run from deck to results: model, discretisation, state, stages, summary.
 module talus_run
   use talus_kinds, only: dp, i8
-  use talus_status, only: status_t, status_set, status_failed
+  use talus_status, only: status_t, status_set, status_failed, status_deck
+  use talus_text, only: text_of
   use talus_deck_types, only: deck_t, deck_given
   use talus_session, only: session_t
   use talus_setup_ground, only: setup_ground
   use talus_setup_disc, only: setup_disc
+  use talus_dual_cells, only: dual_spacing
+  use talus_place, only: place_folder
   use talus_state, only: state_allocate
   use talus_initial, only: initial_hydrostatic, initial_water, initial_k0, weight_masses
   use talus_soil_step, only: work_allocate
   use talus_conditions, only: inlets_t
-  use talus_setup_conditions, only: setup_steady
+  use talus_setup_conditions, only: setup_conditions, setup_steady
   use talus_steady, only: steady_solve
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
     result_write_mesh
@@ -47,7 +50,13 @@ contains
     if (status_failed(status)) return
     call state_allocate(session%state, session%disc, session%ground)
     call work_allocate(session%work, session%disc)
-    call place_probes(session)
+    call place_probes(session, status)
+    if (status_failed(status)) return
+    ! Every stage's boundaries, so that a wrong one is told before anything is written.
+    do i = 1, size(deck%stage)
+      call setup_conditions(deck, session%disc, deck%stage(i)%name, session%conditions, status)
+      if (status_failed(status)) return
+    end do
     call start_state(session, status)
     call timer_stop(session%timer, 'set_up')
   end subroutine run_prepare
@@ -67,6 +76,8 @@ contains
     if (status_failed(status)) return
     session%base = base
     call timer_start(session%timer, 'stages')
+    call place_folder(base, status)
+    if (status_failed(status)) return
     call open_results(session, overwrite, status)
     if (status_failed(status)) return
     slides = .false.
@@ -86,15 +97,24 @@ contains
   end subroutine run_deck
 
   !> Nodes nearest to the probes.
-  subroutine place_probes(session)
+  subroutine place_probes(session, status)
     type(session_t), intent(inout) :: session
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: spacing(:)
     integer :: i
 
     associate (output => session%deck%output, x => session%disc%mesh%x)
       allocate (session%probe(size(output%probe_x)))
+      spacing = dual_spacing(session%disc%dual, session%disc%mesh)
       do i = 1, size(session%probe)
         session%probe(i) = minloc((x(1, :) - output%probe_x(i))**2 &
                                   + (x(2, :) - output%probe_y(i))**2, dim=1)
+        associate (node => session%probe(i))
+          if (norm2(x(:, node) - [output%probe_x(i), output%probe_y(i)]) > 2.0_dp*spacing(node)) &
+            call status_set(status, status_deck, '&output: probe '//text_of(i)//' ('// &
+            text_of(output%probe_x(i))//', '//text_of(output%probe_y(i))// &
+            ') lies outside the body; allowed: points of the body')
+        end associate
       end do
     end associate
   end subroutine place_probes

@@ -3,6 +3,7 @@
 module talus_setup_conditions
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
+  use talus_text, only: text_of
   use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_acts_in
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
@@ -37,7 +38,11 @@ contains
         if (.not. deck_acts_in(boundary, stage)) cycle
         call boundary_set_build(sets(i), disc%mesh, disc%dual, boundary%where, &
           [boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y], status)
-        if (status_failed(status)) return
+        if (status_failed(status)) then
+          status%message = '&boundary '//text_of(i)//' (name = '''//boundary%name//'''), '// &
+            status%message
+          return
+        end if
         call add_supports(boundary, sets(i), conditions)
         call conditions_load(conditions, sets(i), [boundary%traction_x, boundary%traction_y], &
                              boundary%pressure)

@@ -43,13 +43,14 @@ contains
     support = deck%nodes%support*dual_spacing(disc%dual, disc%mesh)
     call scni_build(disc%scni, disc%mesh, disc%dual, support, status)
     if (status_failed(status)) return
-    call build_smoothing(deck, ground, disc, status)
+    call build_smoothing(deck, ground, support/deck%nodes%support, disc, status)
   end subroutine setup_disc
 
   !> Second level and stabilisation.
-  subroutine build_smoothing(deck, ground, disc, status)
+  subroutine build_smoothing(deck, ground, spacing, disc, status)
     type(deck_t), intent(in) :: deck
     type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: spacing(:) !! of the nodes [m], (n)
     type(disc_t), intent(inout) :: disc
     type(status_t), intent(inout) :: status
     real(dp), allocatable :: modulus(:)
@@ -58,6 +59,11 @@ contains
     disc%two_levels = deck%smoothing%levels == 2
     if (disc%two_levels) then
       disc%damage_only = deck%smoothing%acts_on == 'damage_only'
+      if (3.0_dp*sum(spacing)/real(disc%n, dp) > 1.05_dp*deck%smoothing%length) &
+        call status_set(status, status_deck, '&smoothing length = '// &
+        text_of(deck%smoothing%length)//': less than three of the mean node spacing '// &
+        text_of(sum(spacing)/real(disc%n, dp), 4)//' m; allowed: a longer one, or closer nodes')
+      if (status_failed(status)) return
       weights = weights_symmetric
       if (deck%smoothing%weights == 'rk') weights = weights_rk
       if (deck%smoothing%weights == 'area') weights = weights_area

@@ -61,6 +61,12 @@ contains
     real(dp) :: nodes
 
     section = store_first(store, 'nodes')
+    if (deck%geometry%kind /= 'box' .and. len(deck%geometry%kind) > 0) then
+      call check_grading('grading_x', deck%nodes%grading_x)
+      call check_grading('grading_y', deck%nodes%grading_y)
+    end if
+    if (deck%geometry%kind == 'file' .and. deck_given(deck%nodes%spacing)) call warn(store, &
+      section, 'spacing', 'has no effect: the nodes are in the file', messages)
     if (deck%geometry%kind /= 'box' .and. deck%geometry%kind /= 'slope') return
     if (.not. deck_given(deck%nodes%spacing)) then
       if (.not. store%section(section)%value(store_value(store, section, 'spacing'))%is_wrong) then
@@ -88,6 +94,16 @@ contains
     end associate
 
   contains
+
+    subroutine check_grading(key, ratio)
+      character(*), intent(in) :: key
+      real(dp), intent(in) :: ratio
+
+      if (.not. deck_given(ratio)) return
+      if (abs(ratio - 1.0_dp) > 0.0_dp) call complain(store, section, key, &
+        'only a box can be graded', messages, '1 with &geometry kind = '''// &
+        deck%geometry%kind//'''')
+    end subroutine check_grading
 
     subroutine check_fit(key, spacing, name, length)
       character(*), intent(in) :: key, name

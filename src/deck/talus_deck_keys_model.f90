@@ -62,9 +62,9 @@ contains
     call key(t, 'spacing_y', 'real', 'm', '=spacing', '[0, 1e5]', &
              'Node spacing in y; 0 is the same as spacing.')
     call key(t, 'grading_x', 'real', '', '1', '[0.05, 20]', &
-             'Ratio of the last (right) spacing to the first.')
+             'Ratio of the last (right) spacing of a box to the first.')
     call key(t, 'grading_y', 'real', '', '1', '[0.05, 20]', &
-             'Ratio of the last (top) spacing to the first.')
+             'Ratio of the last (top) spacing of a box to the first.')
     call key(t, 'perturbation', 'real', '', '0', '[0, 0.4]', &
              'Random shift of the inner nodes, as a fraction of the spacing.')
     call key(t, 'seed', 'integer', '', '1', '[1, 2000000000]', &

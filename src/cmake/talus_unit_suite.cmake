@@ -17,10 +17,17 @@ else()
   target_link_libraries(talus_funit PRIVATE talus_options)
 endif()
 
+# Small models that the suites share.
+add_library(talus_models STATIC unit/models.f90)
+set_target_properties(talus_models PROPERTIES
+  Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/models")
+target_include_directories(talus_models PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/models")
+target_link_libraries(talus_models PUBLIC talus_core PRIVATE talus_options)
+
 # Build the program of one suite.
 function(talus_unit_program name source)
   if(PFUNIT_FOUND)
-    add_pfunit_ctest(${name} TEST_SOURCES "${source}" LINK_LIBRARIES talus_core)
+    add_pfunit_ctest(${name} TEST_SOURCES "${source}" LINK_LIBRARIES talus_models)
     # pFUnit's generated source is not held to the style of TALUS.
     set_target_properties(${name} PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
   else()
@@ -35,7 +42,7 @@ function(talus_unit_program name source)
     add_executable(${name} "${program}")
     set_target_properties(${name} PROPERTIES
       Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/modules/${name}")
-    target_link_libraries(${name} PRIVATE talus_core talus_funit talus_options)
+    target_link_libraries(${name} PRIVATE talus_models talus_funit talus_options)
   endif()
 endfunction()
 

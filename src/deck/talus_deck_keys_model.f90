@@ -105,8 +105,9 @@ contains
     call key(t, 'suction', 'real', 'Pa', '*', '[-1e9, 1e9]', &
              'Suction everywhere; negative is a positive pore pressure.', 'pore_pressure=uniform')
     call key(t, 'water_table', 'real', 'm', '*', '[-1e7, 1e7]', &
-             'Elevation y of the water table, at the left end if it is inclined; with steady it '// &
-             'counts where no &boundary gives a head: at the sides, or below the body at the bottom.', &
+             'Elevation y of the water table, at the left end if it is inclined; with '// &
+             'steady it counts where no &boundary gives a head: at the sides, or below the '// &
+             'body at the bottom.', &
              'pore_pressure=hydrostatic|steady')
     call key(t, 'water_table_right', 'real', 'm', '=water_table', '[-1e7, 1e7]', &
              'Elevation y of the water table at the right end.', 'pore_pressure=hydrostatic|steady')

@@ -142,8 +142,8 @@ contains
         call initial_water(disc, ground, pressure, session%state)
         if (initial%pore_pressure == 'steady') then
           call setup_steady(session%deck, disc, inlets, status)
-          if (.not. status_failed(status)) call steady_solve(session%seepage, disc, ground, inlets, &
-                                                             session%state, status)
+          if (status_failed(status)) return
+          call steady_solve(session%seepage, disc, ground, inlets, session%state, status)
           if (status_failed(status)) return
           pressure = session%state%pressure
           call initial_water(disc, ground, pressure, session%state)

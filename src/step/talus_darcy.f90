@@ -16,8 +16,8 @@ module talus_darcy
   use talus_strain, only: strain_first
   implicit none
   private
-  public :: seepage_t, seepage_shape, seepage_hold, face_fluxes, face_two_point, cell_outflow
-  public :: seepage_step_limit, seepage_velocity
+  public :: seepage_t, seepage_shape, seepage_hold, face_fluxes, face_two_point, face_oblique
+  public :: oblique_mean, cell_outflow, seepage_step_limit, seepage_velocity
 
   !> Geometry of the seepage in the present shape, and fields of a sub-step.
   type :: seepage_t
@@ -49,10 +49,11 @@ contains
     if (.not. allocated(seepage%tensor)) then
       allocate (seepage%tensor(3, disc%n), seepage%height(disc%n))
       allocate (seepage%held(disc%n))
-      allocate (seepage%q(size(disc%dual%edge_node, 2)), seepage%peclet(size(disc%dual%edge_node, 2)))
+      allocate (seepage%q(size(disc%dual%edge_node, 2)))
+      allocate (seepage%peclet(size(disc%dual%edge_node, 2)))
     end if
-    !$omp parallel do default(none) shared(seepage, disc, ground, state) private(i, soil, k, jacobian) &
-    !$omp schedule(static)
+    !$omp parallel do default(none) shared(seepage, disc, ground, state) &
+    !$omp private(i, soil, k, jacobian) schedule(static)
     do i = 1, disc%n
       soil = disc%soil(i)
       jacobian = state%jacobian(i)
@@ -142,21 +143,43 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: e
     real(dp), intent(out) :: q, peclet
-    real(dp) :: mean, gradient(2)
     integer :: i, j
 
     i = disc%dual%edge_node(1, e)
     j = disc%dual%edge_node(2, e)
     call face_two_point(seepage, disc, ground, e, [state%pressure(i), state%pressure(j)], &
-      [state%potential(i), state%potential(j)], [state%ratio(i), state%ratio(j)], q, mean, peclet)
-    if (.not. seepage%flux%oblique) return
-    gradient = 0.5_dp*(seepage%slope(1:2, i)/disc%dual%area(i) &
-                     + seepage%slope(1:2, j)/disc%dual%area(j))
-    q = q - mean*dot_product(gradient, seepage%flux%rest(:, e))
+      [state%potential(i), state%potential(j)], [state%ratio(i), state%ratio(j)], q, peclet)
+    if (seepage%flux%oblique) q = q + face_oblique(seepage, disc, e, state%ratio, seepage%slope)
   end subroutine face_flux
 
+  !> The part of a face's flux on a distorted grid that follows the smoothed gradient of head.
+  !> It fades where the conductivity changes much between the two nodes: there the two-point flux,
+  !> which knows no over- and undershoot, stands alone.
+  pure real(dp) function face_oblique(seepage, disc, e, ratio, slope) result(q)
+    type(seepage_t), intent(in) :: seepage
+    type(disc_t), intent(in) :: disc
+    integer, intent(in) :: e
+    real(dp), intent(in) :: ratio(:)   !! k_r, (n)
+    real(dp), intent(in) :: slope(:,:) !! area times gradient of head [m2], (4,n)
+    real(dp) :: gradient(2)
+
+    associate (i => disc%dual%edge_node(1, e), j => disc%dual%edge_node(2, e), &
+               share => seepage%flux%share(:, e))
+      gradient = 0.5_dp*(slope(1:2, i)/disc%dual%area(i) + slope(1:2, j)/disc%dual%area(j))
+      q = -oblique_mean(share, [ratio(i), ratio(j)])*dot_product(gradient, seepage%flux%rest(:, e))
+    end associate
+  end function face_oblique
+
+  !> Conductivity of two halves of an edge in series, times 4 k1 k2/(k1 + k2)^2.
+  pure real(dp) function oblique_mean(share, k) result(mean)
+    real(dp), intent(in) :: share(2) !! of each half in the resistance at equal conductivity
+    real(dp), intent(in) :: k(2)     !! relative conductivities [-]
+
+    mean = k(1)*k(2)/(share(1)*k(2) + share(2)*k(1))*4.0_dp*k(1)*k(2)/(k(1) + k(2))**2
+  end function oblique_mean
+
   !> The part of a face's flux that the two nodes beside it decide.
-  pure subroutine face_two_point(seepage, disc, ground, e, p, phi, k, q, mean, peclet)
+  pure subroutine face_two_point(seepage, disc, ground, e, p, phi, k, q, peclet)
     type(seepage_t), intent(in) :: seepage
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
@@ -165,7 +188,6 @@ contains
     real(dp), intent(in) :: phi(2)  !! matric flux potentials [Pa]
     real(dp), intent(in) :: k(2)    !! relative conductivities [-]
     real(dp), intent(out) :: q      !! first to second [m2/s]
-    real(dp), intent(out) :: mean   !! relative conductivity of the oblique part [-]
     real(dp), intent(out) :: peclet !! [-]
     real(dp) :: drop, drive
     integer :: i, j
@@ -175,11 +197,9 @@ contains
     drop = ground%unit_weight*(seepage%height(j) - seepage%height(i))
     if (disc%soil(i) == disc%soil(j)) then
       call face_drive(p(1), p(2), phi(1), phi(2), k(1), k(2), drop, drive, peclet)
-      mean = 0.0_dp
-      if (seepage%flux%oblique) mean = face_mean(p(1), p(2), phi(1), phi(2), k(1), k(2))
     else
       call layered_drive(ground, disc%soil(i), disc%soil(j), p(1), p(2), seepage%flux%share(:, e), &
-        drop, drive, mean)
+        drop, drive)
       peclet = 1.0_dp
     end if
     q = -seepage%flux%along(e)*drive/ground%unit_weight
@@ -187,12 +207,12 @@ contains
 
   !> Between two soils: each half of the edge has its own soil's mean conductivity, and the halves
   !> are resistances in series.
-  pure subroutine layered_drive(ground, soil_i, soil_j, p_i, p_j, share, drop, drive, mean)
+  pure subroutine layered_drive(ground, soil_i, soil_j, p_i, p_j, share, drop, drive)
     type(ground_t), intent(in) :: ground
     integer, intent(in) :: soil_i, soil_j
     real(dp), intent(in) :: p_i, p_j, share(2), drop
-    real(dp), intent(out) :: drive, mean
-    real(dp) :: k(2)
+    real(dp), intent(out) :: drive
+    real(dp) :: k(2), mean
 
     k(1) = own_mean(ground, soil_i, p_i, p_j)
     k(2) = own_mean(ground, soil_j, p_i, p_j)

@@ -108,7 +108,8 @@ contains
                  jacobian => state%jacobian(inlets%node(k)))
         pressure = ground%unit_weight*(inlets%value(k) - height(i))
         pore = jacobian - 1.0_dp + ground%porosity(soil)
-        content = storage_content(ground%curve(soil), ground%storage(soil), pore, jacobian, pressure)
+        content = storage_content(ground%curve(soil), ground%storage(soil), pore, jacobian, &
+          pressure)
         if (.not. abs(content - state%content(i)) > 0.0_dp) cycle
         call book(state%water, (content - state%content(i))*disc%dual%area(i))
         state%content(i) = content

@@ -33,11 +33,8 @@ module talus_seepage
   !> Most growth from one explicit step to the next, and what a rejected one is divided by.
   real(dp), parameter :: growth = 2.0_dp, cut = 8.0_dp
   integer, parameter :: most_cuts = 7
-  !> Water content that an implicit step may change in a cell [-].
+  !> Water content that an implicit step should change in a cell, and any step at most twice [-].
   real(dp), parameter :: content_change = 0.01_dp
-  !> Last relative change of pressure and iterations of an implicit step.
-  real(dp), parameter :: newton_tolerance = 1.0e-7_dp
-  integer, parameter :: newton_most = 15
 
 contains
 
@@ -86,7 +83,8 @@ contains
       if (seepage%last > 0.0_dp) step = min(step, growth*seepage%last)
       if (min(seepage%stride, allowed) > cost*step) then
         call newton_prepare(newton, disc)
-        call implicit_step(newton, seepage, disc, ground, inlets, start + done, allowed, state, step)
+        call implicit_step(newton, seepage, disc, ground, inlets, start + done, allowed, state, &
+          step)
       else
         ! Two even last steps instead of a full one and a sliver.
         if (step < allowed .and. 2.0_dp*step > allowed) step = 0.5_dp*allowed
@@ -133,14 +131,15 @@ contains
     do cuts = 0, most_cuts
       call take_step(seepage, disc, ground, inlets, time, step, state)
       call face_fluxes(seepage, disc, ground, state)
-      if (step <= excess*seepage_step_limit(seepage, disc, ground, state)) exit
+      moved = maxval(abs(state%content - content))
+      if (step <= excess*seepage_step_limit(seepage, disc, ground, state) .and. &
+          moved <= 2.0_dp*content_change) exit
       if (cuts == most_cuts) exit
       step = step/cut
       state%content = content
       state%water = water
       seepage%q = q
     end do
-    moved = maxval(abs(state%content - content))
     seepage%stride = step*content_change/max(moved, 1.0e-12_dp)
     seepage%last = step
   end subroutine explicit_step
@@ -170,7 +169,8 @@ contains
     step = min(seepage%stride, allowed)
     if (step < allowed .and. 2.0_dp*step > allowed) step = 0.5_dp*allowed
     do
-      call two_stages(newton, seepage, disc, ground, inlets, time, step, state, converged, iterations)
+      call two_stages(newton, seepage, disc, ground, inlets, time, step, state, converged, &
+        iterations)
       moved = maxval(abs(state%content - content))
       if (converged .and. (moved <= 2.0_dp*content_change .or. step <= shortest)) exit
       if (converged) then
@@ -220,8 +220,8 @@ contains
     iterations = 0
     do stage = 1, 2
       call newton_solve(newton, seepage, disc, ground, inlets, 1.0_dp/(theta*step), &
-        seepage_supply(seepage, inlets, time, theta*step), newton_tolerance, newton_most, state, &
-        converged, needed)
+        seepage_supply(seepage, inlets, time, theta*step), state, converged, &
+        needed)
       iterations = max(iterations, needed)
       if (.not. converged) return
       call take_step(seepage, disc, ground, inlets, time, theta*step, state)

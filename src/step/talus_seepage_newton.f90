@@ -3,19 +3,23 @@
 !>
 !>   A (w(p) - w_old) rate + net outflow of the faces(p) - supply of the boundary = 0
 !>
-!> in every cell, by Newton's method with a line search and LAPACK's band solver; rate = 1/step, or 0
-!> for the steady state. The Jacobian is differenced from the two-point fluxes; the oblique part of a
-!> distorted grid is in the residual alone. Ponds and seepage faces are inequalities (p <= limit, and
-!> no more inflow than is supplied), kept by an active set: a node is held at its limit while that
-!> takes less than its supply (Hintermueller, Ito & Kunisch 2002).
+!> in every cell, by Newton's method with a line search and LAPACK's band solver; rate = 1/step, or
+!> 0 for the steady state. The Jacobian is differenced from the face fluxes with the smoothed gradient
+!> of a distorted grid as it is; inner iterations with the same factors add the change of that.
+!> Ponds and seepage faces are inequalities (p <= limit, and no more inflow than is supplied), kept
+!> by an active set: a node is held at its limit while that takes less than its supply
+!> (Hintermueller, Ito & Kunisch 2002).
 module talus_seepage_newton
   use talus_kinds, only: dp
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_conditions, only: inlets_t, inlet_head, inlet_rain, inlet_seepage
+  use talus_storage, only: storage_capacity
   use talus_water_curve, only: curve_at_pressure
-  use talus_darcy, only: seepage_t, face_fluxes, face_two_point, cell_outflow
+  use talus_darcy, only: seepage_t, face_fluxes, face_two_point, face_oblique, &
+    oblique_mean, cell_outflow
+  use talus_strain, only: strain_first
   implicit none
   private
   public :: newton_t, newton_prepare, newton_solve, newton_cost
@@ -26,6 +30,13 @@ module talus_seepage_newton
     integer, allocatable :: pivot(:)        !! (n)
     real(dp), allocatable :: residual(:)    !! [m2/s], (n)
     real(dp), allocatable :: change(:,:)    !! Newton's change of pressure [Pa], (n,1)
+    real(dp), allocatable :: inner(:,:)     !! the same in an inner iteration [Pa], (n,1)
+    real(dp), allocatable :: head(:,:)      !! head of a change [m], (2,n); second row unused zeros
+    real(dp), allocatable :: gradient(:,:)  !! area times its gradient [m2], (4,n)
+    real(dp), allocatable :: oblique(:)     !! its oblique flux through each face [m2/s]
+    real(dp) :: tolerance = 1.0e-7_dp       !! of the last relative change of pressure
+    integer :: most = 15                    !! iterations allowed
+    logical :: balanced = .true.            !! also the water left over must be worth no more
     real(dp), allocatable :: pressure(:)    !! before a line search [Pa], (n)
     real(dp), allocatable :: probe(:,:)     !! step of differencing, potential and k there, (3,n)
     real(dp), allocatable :: slope(:,:)     !! dq/dp at both ends of a face [m2/(s Pa)], (2,ne)
@@ -35,16 +46,27 @@ module talus_seepage_newton
   real(dp), parameter :: pressure_scale = 100.0_dp
   !> Step of differencing relative to the pressure.
   real(dp), parameter :: difference = 1.0e-7_dp
+  !> Inner iterations for the oblique fluxes, and their last relative change.
+  integer, parameter :: most_inner = 30
+  real(dp), parameter :: inner_tolerance = 1.0e-4_dp
   !> Iterations after which a pond or seepage face is not released again.
   integer, parameter :: patience = 12
 
   interface
-    subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+    subroutine dgbtrf(m, n, kl, ku, ab, ldab, ipiv, info)
       import :: dp
-      integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
-      real(dp), intent(inout) :: ab(ldab,*), b(ldb,*)
+      integer, intent(in) :: m, n, kl, ku, ldab
+      real(dp), intent(inout) :: ab(ldab,*)
       integer, intent(out) :: ipiv(*), info
-    end subroutine dgbsv
+    end subroutine dgbtrf
+    subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+      import :: dp
+      character, intent(in) :: trans
+      integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb, ipiv(*)
+      real(dp), intent(in) :: ab(ldab,*)
+      real(dp), intent(inout) :: b(ldb,*)
+      integer, intent(out) :: info
+    end subroutine dgbtrs
   end interface
 
 contains
@@ -58,11 +80,14 @@ contains
     newton%band = maxval(abs(disc%dual%edge_node(2, :) - disc%dual%edge_node(1, :)))
     allocate (newton%matrix(3*newton%band + 1, disc%n), newton%pivot(disc%n), &
       newton%residual(disc%n), newton%change(disc%n, 1), newton%pressure(disc%n), &
-      newton%probe(3, disc%n), newton%slope(2, size(disc%dual%edge_node, 2)))
+      newton%probe(3, disc%n), newton%slope(2, size(disc%dual%edge_node, 2)), &
+      newton%inner(disc%n, 1), newton%gradient(4, disc%n), &
+      newton%oblique(size(disc%dual%edge_node, 2)))
+    allocate (newton%head(2, disc%n), source=0.0_dp)
   end subroutine newton_prepare
 
-  !> Explicit steps that take as long as one implicit step: four iterations of assembly and of a band
-  !> factorisation with row exchanges, measured against an explicit step of the same nodes.
+  !> Explicit steps that take as long as one implicit step: four iterations of assembly and of a
+  !> band factorisation with row exchanges, measured against an explicit step of the same nodes.
   pure real(dp) function newton_cost(disc) result(steps)
     type(disc_t), intent(in) :: disc
     real(dp) :: band
@@ -73,8 +98,8 @@ contains
 
   !> Solve for the pressures; the content of `state` is w_old and stays. On return the fluxes in
   !> `seepage` and the flow properties in `state` belong to the pressures found.
-  subroutine newton_solve(newton, seepage, disc, ground, inlets, rate, supply, tolerance, most, &
-    state, converged, iterations)
+  subroutine newton_solve(newton, seepage, disc, ground, inlets, rate, supply, state, converged, &
+    iterations)
     type(newton_t), intent(inout) :: newton
     type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
@@ -82,27 +107,25 @@ contains
     type(inlets_t), intent(in) :: inlets
     real(dp), intent(in) :: rate      !! 1/step [1/s]
     real(dp), intent(in) :: supply(:) !! water offered at each inlet [m2/s]
-    real(dp), intent(in) :: tolerance !! of the last relative change of pressure
-    integer, intent(in) :: most       !! iterations allowed
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     integer, intent(out) :: iterations
-    real(dp) :: before, part, change
+    real(dp) :: before, part, change, over, over_before
     logical :: switched
-    integer :: halving, info
+    integer :: halving
+    logical :: solved
 
     converged = .false.
+    over = huge(1.0_dp)
     call pressures_hold(seepage, ground, inlets, state%pressure)
     call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
-    do iterations = 1, most
+    do iterations = 1, newton%most
       call switch_inlets(newton, seepage, inlets, iterations <= patience, state%pressure, switched)
       if (switched) call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
       before = free_norm(newton, seepage)
       call assemble(newton, seepage, disc, ground, rate, state)
-      newton%change(:, 1) = merge(0.0_dp, -newton%residual, seepage%held)
-      call dgbsv(disc%n, newton%band, newton%band, 1, newton%matrix, 3*newton%band + 1, &
-        newton%pivot, newton%change, disc%n, info)
-      if (info /= 0) return
+      call find_change(newton, seepage, disc, ground, state%ratio, solved)
+      if (.not. solved) return
       newton%pressure = state%pressure
       change = maxval(abs(newton%change(:, 1))/(abs(newton%pressure) + pressure_scale))
       if (.not. change < huge(change)) return
@@ -111,17 +134,105 @@ contains
         state%pressure = newton%pressure + part*newton%change(:, 1)
         call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
         if (free_norm(newton, seepage) <= (1.0_dp - 1.0e-4_dp*part)*before) exit
-        if (change <= tolerance) exit
+        if (change <= newton%tolerance) exit
         part = 0.5_dp*part
       end do
-      if (change > tolerance .or. halving > 1) cycle
+      if (change > newton%tolerance .or. halving > 1) cycle
+      if (newton%balanced) then
+        over_before = over
+        over = left_over(newton, seepage, disc, rate, state)
+        ! Until it is well below the tolerance, or at the round-off of the fluxes.
+        if (over > 1.0e-3_dp*newton%tolerance .and. over < 0.8_dp*over_before .and. &
+            iterations < newton%most) cycle
+      end if
       call switch_inlets(newton, seepage, inlets, iterations <= patience, state%pressure, switched)
       converged = .not. switched
       if (converged) return
       call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
     end do
-    iterations = most
+    iterations = newton%most
   end subroutine newton_solve
+
+  !> Newton's change of pressure. Where the grid is oblique the factors of the two-point part solve
+  !> for the rest by inner iterations; where these diverge it is left to the outer ones.
+  subroutine find_change(newton, seepage, disc, ground, ratio, solved)
+    type(newton_t), intent(inout) :: newton
+    type(seepage_t), intent(in) :: seepage
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: ratio(:) !! k_r, (n)
+    logical, intent(out) :: solved
+    real(dp), allocatable :: first(:)
+    real(dp) :: difference_now, difference_before
+    integer :: info, inner, rows
+
+    rows = 3*newton%band + 1
+    newton%change(:, 1) = merge(0.0_dp, -newton%residual, seepage%held)
+    call dgbtrf(disc%n, disc%n, newton%band, newton%band, newton%matrix, rows, newton%pivot, info)
+    solved = info == 0
+    if (.not. solved) return
+    call dgbtrs('N', disc%n, newton%band, newton%band, 1, newton%matrix, rows, newton%pivot, &
+      newton%change, disc%n, info)
+    if (.not. seepage%flux%oblique) return
+    first = newton%change(:, 1)
+    difference_before = huge(1.0_dp)
+    do inner = 1, most_inner
+      call oblique_outflow(newton, seepage, disc, ground, ratio)
+      call dgbtrs('N', disc%n, newton%band, newton%band, 1, newton%matrix, rows, newton%pivot, &
+        newton%inner, disc%n, info)
+      newton%inner(:, 1) = first - newton%inner(:, 1)
+      difference_now = maxval(abs(newton%inner(:, 1) - newton%change(:, 1)))
+      if (.not. difference_now < difference_before) then
+        newton%change(:, 1) = first
+        return
+      end if
+      newton%change = newton%inner
+      if (difference_now <= inner_tolerance*maxval(abs(newton%change))) return
+      difference_before = difference_now
+    end do
+  end subroutine find_change
+
+  !> Net outflow by the oblique fluxes of a change of pressure, 0 in held cells, into newton%inner.
+  subroutine oblique_outflow(newton, seepage, disc, ground, ratio)
+    type(newton_t), intent(inout) :: newton
+    type(seepage_t), intent(in) :: seepage
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    real(dp), intent(in) :: ratio(:) !! k_r, (n)
+    integer :: e, i
+
+    !$omp parallel default(none) shared(newton, seepage, disc, ground, ratio) private(e, i)
+    !$omp do schedule(static)
+    do i = 1, disc%n
+      newton%head(1, i) = newton%change(i, 1)/ground%unit_weight
+    end do
+    !$omp end do
+    call strain_first(disc%scni, newton%head, newton%gradient)
+    !$omp do schedule(static)
+    do e = 1, size(newton%oblique)
+      newton%oblique(e) = face_oblique(seepage, disc, e, ratio, newton%gradient)
+    end do
+    !$omp end do
+    !$omp do schedule(static)
+    do i = 1, disc%n
+      newton%inner(i, 1) = 0.0_dp
+      if (.not. seepage%held(i)) newton%inner(i, 1) = cell_outflow(disc%dual, newton%oblique, i)
+    end do
+    !$omp end do
+    !$omp end parallel
+  end subroutine oblique_outflow
+
+  !> Water left over by the pressures found, as a relative pressure.
+  pure real(dp) function left_over(newton, seepage, disc, rate, state) result(worst)
+    type(newton_t), intent(in) :: newton
+    type(seepage_t), intent(in) :: seepage
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: rate !! [1/s]
+    type(state_t), intent(in) :: state
+
+    worst = maxval(abs(newton%residual)/(disc%dual%area*rate*state%capacity* &
+      (abs(state%pressure) + pressure_scale)), mask=.not. seepage%held)
+  end function left_over
 
   !> Put held nodes at the pressure that holds them.
   pure subroutine pressures_hold(seepage, ground, inlets, pressure)
@@ -177,7 +288,7 @@ contains
     type(inlets_t), intent(in) :: inlets
     real(dp), intent(in) :: rate, supply(:)
     type(state_t), intent(inout) :: state
-    real(dp) :: content, pore, capacity
+    real(dp) :: content, pore
     integer :: i, k
 
     !$omp parallel do default(none) shared(disc, ground, state) private(i) schedule(static)
@@ -188,15 +299,14 @@ contains
     !$omp end parallel do
     call face_fluxes(seepage, disc, ground, state)
     !$omp parallel do default(none) shared(newton, seepage, disc, ground, state, rate) &
-    !$omp private(i, content, pore, capacity) schedule(static)
+    !$omp private(i, content, pore) schedule(static)
     do i = 1, disc%n
       associate (jacobian => state%jacobian(i), soil => disc%soil(i))
         pore = jacobian - 1.0_dp + ground%porosity(soil)
-        content = pore*state%saturation(i) &
-          + jacobian*ground%storage(soil)*max(state%pressure(i), 0.0_dp)
-        capacity = pore*state%capacity(i)
-        if (state%pressure(i) >= 0.0_dp) capacity = capacity + jacobian*ground%storage(soil)
-        state%capacity(i) = capacity
+        content = pore*state%saturation(i) + jacobian*ground%storage(soil) &
+          *max(state%pressure(i) + ground%curve(soil)%entry, 0.0_dp)
+        state%capacity(i) = storage_capacity(ground%curve(soil), ground%storage(soil), pore, &
+          jacobian, state%pressure(i), state%capacity(i))
       end associate
       newton%residual(i) = disc%dual%area(i)*rate*(content - state%content(i)) &
         + cell_outflow(disc%dual, seepage%q, i)
@@ -262,7 +372,8 @@ contains
     end do
   end subroutine assemble
 
-  !> Derivatives of a face's two-point flux by the pressures at its ends.
+  !> Derivatives of a face's flux by the pressures at its ends, with the smoothed gradient of the
+  !> oblique part as it is.
   pure subroutine face_slope(newton, seepage, disc, ground, state, e, slope)
     type(newton_t), intent(in) :: newton
     type(seepage_t), intent(in) :: seepage
@@ -271,19 +382,25 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: e
     real(dp), intent(out) :: slope(2) !! [m2/(s Pa)]
-    real(dp) :: p(2), phi(2), k(2), q, q_probe, mean, peclet
+    real(dp) :: p(2), phi(2), k(2), q, q_probe, peclet, mean, q_oblique
     integer :: node(2), side
 
     node = disc%dual%edge_node(:, e)
     p = state%pressure(node)
     phi = state%potential(node)
     k = state%ratio(node)
-    call face_two_point(seepage, disc, ground, e, p, phi, k, q, mean, peclet)
+    call face_two_point(seepage, disc, ground, e, p, phi, k, q, peclet)
+    if (seepage%flux%oblique) then
+      mean = oblique_mean(seepage%flux%share(:, e), k)
+      q_oblique = face_oblique(seepage, disc, e, state%ratio, seepage%slope)
+    end if
     do side = 1, 2
       p(side) = p(side) + newton%probe(1, node(side))
       phi(side) = newton%probe(2, node(side))
       k(side) = newton%probe(3, node(side))
-      call face_two_point(seepage, disc, ground, e, p, phi, k, q_probe, mean, peclet)
+      call face_two_point(seepage, disc, ground, e, p, phi, k, q_probe, peclet)
+      if (seepage%flux%oblique) q_probe = q_probe + q_oblique &
+        *(oblique_mean(seepage%flux%share(:, e), k)/mean - 1.0_dp)
       slope(side) = (q_probe - q)/(p(side) - state%pressure(node(side)))
       p(side) = state%pressure(node(side))
       phi(side) = state%potential(node(side))

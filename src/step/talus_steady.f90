@@ -23,7 +23,7 @@ module talus_steady
   !> First, last and smallest pseudo-step [s].
   real(dp), parameter :: step_first = 3600.0_dp, step_last = 1.0e12_dp, step_least = 1.0e-3_dp
   !> Last relative change of pressure in a pseudo-step and at the end.
-  real(dp), parameter :: tolerance_way = 1.0e-5_dp, tolerance_end = 1.0e-11_dp
+  real(dp), parameter :: tolerance_way = 1.0e-5_dp, tolerance_end = 1.0e-9_dp
   integer, parameter :: most_way = 20, most_end = 60, most_steps = 300
 
 contains
@@ -40,42 +40,43 @@ contains
     type(newton_t) :: newton
     real(dp), allocatable :: supply(:), pressure(:)
     logical, allocatable :: held(:)
-    real(dp) :: step
+    real(dp) :: step, growth
     logical :: converged
     integer :: iterations, i
 
     if (.not. any(inlets%kind == inlet_head .or. inlets%kind == inlet_seepage)) then
-      call status_set(status, status_deck, 'pore_pressure = ''steady'': no boundary lets water out; '// &
-        'allowed: at least one &boundary with water = ''head'' or ''seepage_face'', or a water_table')
+      call status_set(status, status_deck, 'pore_pressure = ''steady'': no boundary lets '// &
+        'water out; allowed: at least one &boundary with water = ''head'' or ''seepage_face'', '// &
+        'or a water_table')
       return
     end if
     call seepage_shape(seepage, disc, ground, inlets, state)
     call newton_prepare(newton, disc)
+    newton%balanced = .false.
     supply = seepage_supply(seepage, inlets, 0.0_dp, 1.0_dp)
     step = step_first
+    growth = 10.0_dp
     do i = 1, most_steps
       pressure = state%pressure
       held = seepage%held
-      if (step < step_last) then
-        call newton_solve(newton, seepage, disc, ground, inlets, 1.0_dp/step, supply, &
-          tolerance_way, most_way, state, converged, iterations)
-      else
-        call newton_solve(newton, seepage, disc, ground, inlets, 0.0_dp, supply, tolerance_end, &
-          most_end, state, converged, iterations)
-        if (converged) return
-      end if
+      newton%tolerance = merge(tolerance_way, tolerance_end, step < step_last)
+      newton%most = merge(most_way, most_end, step < step_last)
+      call newton_solve(newton, seepage, disc, ground, inlets, &
+        merge(1.0_dp/step, 0.0_dp, step < step_last), supply, state, converged, iterations)
+      if (converged .and. step >= step_last) return
       if (converged) then
         call store(disc, ground, state)
-        step = step*merge(10.0_dp, 3.0_dp, iterations <= 6)
+        step = step*merge(growth, 2.0_dp, iterations <= 6)
       else
         state%pressure = pressure
         seepage%held = held
-        step = min(step, step_last)/10.0_dp
+        step = min(step, step_last)/5.0_dp
+        growth = max(2.0_dp, 0.5_dp*growth)
         if (step < step_least) exit
       end if
     end do
-    call status_set(status, status_numeric, 'pore_pressure = ''steady'': no steady seepage found; '// &
-      'last pseudo-step '//text_of(step)//' s after '//text_of(i)//' steps, largest imbalance '// &
+    call status_set(status, status_numeric, 'pore_pressure = ''steady'': no steady seepage '// &
+      'found; last pseudo-step '//text_of(step)//' s after '//text_of(i)//' steps, largest imbalance '// &
       text_of(maxval(abs(newton%residual), mask=.not. seepage%held))//' m2/s of an offer of '// &
       text_of(sum(supply))//' m2/s; the rain may exceed what the ground can drain')
   end subroutine steady_solve
@@ -109,7 +110,8 @@ contains
 
     if (any(inlets%kind == inlet_head)) return
     do k = 1, 2
-      call boundary_set_build(set, disc%mesh, disc%dual, trim(side(k)), spread(0.0_dp, 1, 4), status)
+      call boundary_set_build(set, disc%mesh, disc%dual, trim(side(k)), &
+        spread(0.0_dp, 1, 4), status)
       do i = 1, size(set%node)
         if (disc%mesh%x(2, set%node(i)) <= table(k)) call add_head(inlets, set%node(i), table(k))
       end do

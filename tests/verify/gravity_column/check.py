@@ -3,9 +3,10 @@
 
 One level: within 0.5 % of rho g H at every node (benchmarks.md).
 Two levels: the soil law sees strain averaged over ell, and the average of its stress carries the
-load. That average is within 1 % at every node (the stabilisation, alpha_s = 5 %, carries the rest). The nodal stress itself is, further than ell from
-both ends; nearer, where the averages are one-sided, it departs by up to 0.35 rho g ell: the price of
-a length that belongs to the soil, bounded by ell and not an error of the solution.
+load. That average is within 1 % at every node (the stabilisation, alpha_s = 5 %, carries the rest).
+The nodal stress itself is, further than ell from both ends; nearer, where the averages are one-
+sided, it departs by up to 0.35 rho g ell: the price of a length that belongs to the soil, bounded
+by ell and not an error of the solution.
 """
 
 import sys

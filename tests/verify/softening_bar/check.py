@@ -2,10 +2,11 @@
 """D1, softening bar with a weak middle, h = ell/4, ell/8, ell/16, ell = 1 m.
 
 Damage by the energy norm with linear softening; the bar is pulled by a boundary that moves with the
-storm clock to six times the displacement at which it cracks. With two levels the work that damage dissipates agrees
-within 2 % and the width of the band within 10 % over the three spacings (benchmarks.md D1). With one
-level both shrink with the spacing, which is why the second level exists. The width is that of the
-rectangle with the same second moment as the strain in excess of the unloaded bar's.
+storm clock to six times the displacement at which it cracks. With two levels the work that damage
+dissipates agrees within 2 % and the width of the band within 10 % over the three spacings
+(benchmarks.md D1). With one level both shrink with the spacing, which is why the second level
+exists. The width is that of the rectangle with the same second moment as the strain in excess of
+the unloaded bar's.
 """
 
 import sys

@@ -29,9 +29,10 @@ reach = weak.nodes[band]
 case.check_true("a shear band runs from the toe into the ground behind the face",
                 np.min(np.linalg.norm(reach - [6.0, 2.0], axis=1)) < 0.5
                 and reach[:, 1].max() > 3.0)
-strong = case.run("case.nml", [("cohesion = 15.0e3", "cohesion = 25.0e3")], name="strong").history()
+strong = case.run("case.nml", [("cohesion = 15.0e3", "cohesion = 25.0e3"),
+                             ("duration = 0.6", "duration = 1.0")], name="strong").history()
 case.check("25 kPa, opened: it stays [m]", strong["maximum_displacement"].max(), 0.1,
            "elastic unloading swings by twice its static 3 cm")
-case.check_true(f"25 kPa, opened: plastic work has ended",
+case.check_true("25 kPa, opened: plastic work has ended",
                 np.ptp(strong["energy_plastic"][-20:]) < 0.02 * strong["energy_plastic"][-1])
 sys.exit(case.verdict())

@@ -33,7 +33,7 @@ contains
     type(status_t), intent(inout) :: status
     integer :: failed
 
-    associate (folder => base(:index(base, '/', back=.true.)))
+    associate (folder => base(:max(1, index(base, '/', back=.true.) - 1)))
       call execute_command_line("mkdir -p -- '"//quoted(folder)//"'", exitstat=failed)
       if (failed /= 0) call status_set(status, status_io, 'cannot make the folder '//folder)
     end associate

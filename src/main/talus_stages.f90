@@ -29,6 +29,8 @@ module talus_stages
   integer, parameter :: relax_chunk = 500
   !> History lines of a dynamic stage when the deck does not say.
   integer, parameter :: dynamic_lines = 200
+  !> Part of a dynamic stage before which rest is not believed: a slide starts slowly.
+  real(dp), parameter :: rest_share = 0.05_dp
   !> Real-time steps between two looks at how far the soil has moved; the stable step is found again
   !> when that is more than this part of the node spacing, and with moving pore water now and then.
   integer(i8), parameter :: look_every = 20_i8, refresh_every = 240_i8
@@ -326,7 +328,7 @@ contains
         call record_snapshot(session, status)
         call put_off(next_snapshot, done, snapshot_interval(session, stage))
       end if
-      if (speed < stage%rest_velocity .and. done > 10.0_dp*line_interval) exit
+      if (speed < stage%rest_velocity .and. done > rest_share*stage%duration) exit
     end do
     call record_snapshot(session, status)
   end subroutine run_dynamic

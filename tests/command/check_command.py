@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The command line of the program: what each word prints, and its exit code.
+
+check_command.py PROGRAM runs every case below in an empty folder, in which none may leave a file.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+
+# Arguments, exit code, and a part of what is printed.
+CASES = [
+    ([], 0, "talus run DECK"),
+    (["help"], 0, "exit codes: 0 done, 1 files"),
+    (["--help"], 0, "talus check DECK"),
+    (["version"], 0, "talus "),
+    (["-V"], 0, "talus "),
+    (["keys"], 0, "youngs_modulus"),
+    (["keys", "nodes"], 0, "spacing"),
+    (["keys", "nodse"], 2, "nodes"),
+    (["manual"], 0, "youngs_modulus"),
+    (["walk"], 2, 'unknown word "walk"; allowed: run, check, keys, manual, version, help'),
+    (["run"], 2, "run needs a deck: talus run DECK"),
+    (["check"], 2, "check needs a deck: talus check DECK"),
+    (["run", "a.nml", "b.nml"], 2, 'unexpected "b.nml" after run'),
+    (["run", "a.nml", "--thread", "2"], 2, 'unexpected "--thread" after run; allowed: one deck'),
+    (["run", "a.nml", "--threads", "two"], 2, "--threads two: allowed: a whole number from 1"),
+    (["run", "a.nml", "--threads", "0"], 2, "--threads 0: allowed: a whole number from 1"),
+    (["run", "a.nml", "--threads"], 2, "allowed: a whole number from 1 to 1024"),
+    (["run", "a.nml", "--output"], 2, "--output needs a folder"),
+    (["run", "no_such_deck.nml"], 2, "no_such_deck.nml"),
+    (["check", "no_such_deck.nml"], 2, "no_such_deck.nml"),
+]
+
+
+def fault_of(program, arguments, code, part):
+    """What is wrong with a case, '' for nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True,
+                             timeout=60, check=False)
+        left = " ".join(os.listdir(folder))
+    printed = run.stdout + run.stderr
+    if run.returncode != code:
+        return f"exit code {run.returncode}, not {code}; it printed:\n{printed}"
+    if part not in printed:
+        return f"does not print {part!r} but:\n{printed}"
+    return f"left {left}" if left else ""
+
+
+def main():
+    """Run all cases."""
+    faults = 0
+    for arguments, code, part in CASES:
+        fault = fault_of(sys.argv[1], arguments, code, part)
+        faults += bool(fault)
+        if fault:
+            print(f"talus {' '.join(arguments)}: {fault}")
+    print(f"{len(CASES)} command lines, {faults} wrong")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -37,6 +37,7 @@ module talus_session
     logical :: lost = .false.               !! the latest storm ended in failure
     logical :: failed = .false.             !! some storm ended in failure
     real(dp) :: trigger_time = -1.0_dp      !! when it was lost first [s]; -1: never
+    real(dp) :: staggering = 0.0_dp         !! greatest audit_staggering of all storm steps
     real(dp) :: worst_water_error = 0.0_dp  !! over all storms
     real(dp) :: worst_energy_error = 0.0_dp !! over all dynamic stages
     real(dp) :: greatest_displacement = 0.0_dp !! since displacements were last reset [m]

@@ -16,7 +16,8 @@ module talus_stages
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, relax_balanced, &
     relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
-  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
+  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, audit_staggering, &
+    energies_t
   use talus_soil_law, only: soil_inverted
   use talus_record, only: record_line, record_snapshot, record_last_good
   use talus_progress, only: progress_start, progress_end, progress_say
@@ -267,6 +268,8 @@ contains
     call timer_start(session%timer, 'seepage')
     if (stage%solve == 'both') call seepage_shape(session%seepage, session%disc, session%ground, &
       session%conditions%inlets, session%state)
+    if (stage%solve == 'both') session%staggering = max(session%staggering, &
+      audit_staggering(session%disc, session%ground, session%state, step))
     call seepage_advance(session%seepage, session%disc, session%ground, session%conditions%inlets, &
       session%state%time - session%stage_start, step, session%state)
     call timer_stop(session%timer, 'seepage')

@@ -44,6 +44,8 @@ module talus_seepage_newton
 
   !> Pressure below which a change is judged absolutely [Pa].
   real(dp), parameter :: pressure_scale = 100.0_dp
+  !> A node's pressure changes by its own size and this at most in an iteration [Pa].
+  real(dp), parameter :: reach = 5000.0_dp
   !> Step of differencing relative to the pressure.
   real(dp), parameter :: difference = 1.0e-7_dp
   !> Inner iterations for the oblique fluxes, and their last relative change.
@@ -127,6 +129,8 @@ contains
       call find_change(newton, seepage, disc, ground, state%ratio, solved)
       if (.not. solved) return
       newton%pressure = state%pressure
+      newton%change(:, 1) = sign(min(abs(newton%change(:, 1)), abs(newton%pressure) + reach), &
+        newton%change(:, 1))
       change = maxval(abs(newton%change(:, 1))/(abs(newton%pressure) + pressure_scale))
       if (.not. change < huge(change)) return
       part = 1.0_dp

@@ -14,7 +14,7 @@ module talus_check
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_initial, only: weight_load
   use talus_audit, only: audit_load
-  use talus_timer, only: timer_now
+  use talus_timer, only: timer_now, timer_seconds
   use talus_cost, only: cost_t, cost_of
   use talus_spectrum, only: spectrum_frequencies, spectrum_most_nodes
   implicit none
@@ -23,6 +23,8 @@ module talus_check
 
   !> Steps that are timed on a copy, to estimate the run time.
   integer, parameter :: trial_steps = 10
+  !> What looks at the step, audits and output add to the steps.
+  real(dp), parameter :: overhead = 1.5_dp
 
 contains
 
@@ -32,20 +34,23 @@ contains
     logical, intent(in) :: spectrum !! also all eigenvalues, of a small model
     type(status_t), intent(inout) :: status
     type(session_t) :: session
-    real(dp) :: total
+    real(dp) :: total, slide
     integer :: i
 
     call run_prepare(deck, session, status)
     if (status_failed(status)) return
     write (output_unit, '(a)') deck%resolved
     call print_model(session)
-    total = 0.0_dp
+    total = timer_seconds(session%timer, 'set_up')
+    slide = 0.0_dp
     do i = 1, size(deck%stage)
-      call print_stage(session, i, spectrum, total, status)
+      call print_stage(session, i, spectrum, total, slide, status)
       if (status_failed(status)) return
     end do
     write (output_unit, '(/,2a)') 'estimated run time        ', text_of(total, 3)// &
-      ' s on this machine, within a factor of about 3 (more where a storm ends in failure)'
+      ' s on this machine, within a factor of about 3'
+    if (slide > 0.0_dp) write (output_unit, '(2a)') '  if a storm fails        ', &
+      text_of(slide, 3)//' s more, and the search for the time of failure'
   end subroutine check_deck
 
   !> Size and active parts.
@@ -128,11 +133,12 @@ contains
   end subroutine part
 
   !> Steps and estimated time of one stage, from a few trial steps on a copy of the state.
-  subroutine print_stage(session, number, spectrum, total, status)
+  subroutine print_stage(session, number, spectrum, total, slide, status)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
     real(dp), intent(inout) :: total !! time of the stages so far [s]
+    real(dp), intent(inout) :: slide !! time of those that a failure leads to [s]
     type(status_t), intent(inout) :: status
     real(dp) :: each, steps, estimate
 
@@ -154,12 +160,16 @@ contains
         each = time_of_a_step(session)
         steps = typical_steps(session, number)
         write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
-        estimate = steps*each
+        estimate = overhead*steps*each
       end if
       if (stage%solve /= 'soil') call print_seepage(session, number, estimate)
       write (output_unit, '(2a)') '  estimated run time      ', text_of(estimate, 3)//' s'// &
         trim(merge(', if it is reached', '                  ', stage%only_after_failure))
-      total = total + estimate
+      if (stage%only_after_failure) then
+        slide = slide + estimate
+      else
+        total = total + estimate
+      end if
     end associate
   end subroutine print_stage
 

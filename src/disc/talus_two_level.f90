@@ -109,7 +109,8 @@ contains
       end associate
       if (.not. regular) bad = l
     end do
-    if (bad > 0) call status_set(status, status_deck, '&smoothing length: too few nodes within it'// &
+    if (bad > 0) call status_set(status, status_deck, &
+      '&smoothing length: too few nodes within it'// &
       ' of node '//text_of(bad)//'; raise length or reduce spacing')
   end subroutine fill_rk
 

@@ -152,7 +152,8 @@ contains
         session%motion%local = stage%damping
         call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
                             stage%mass_scaling, 1.0_dp, session%motion, session%work)
-        write (output_unit, '(2a)') '  stable soil step        ', text_of(session%motion%step, 4)// &
+        write (output_unit, '(2a)') '  stable soil step        ', &
+          text_of(session%motion%step, 4)// &
           trim(merge(' s of relaxation (scaled masses)', ' s                              ', &
                      stage%mass_scaling))
         if (spectrum) call print_spectrum(session)

@@ -13,8 +13,8 @@ module talus_stages
   use talus_setup_conditions, only: setup_conditions
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
-  use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, relax_balanced, &
-    relax_broken
+  use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
+    relax_balanced, relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, audit_staggering, &
     energies_t
@@ -256,7 +256,8 @@ contains
     ! Soil that turns inside out while it looks for equilibrium has found none.
     stands = outcome%outcome == relax_balanced
     if (outcome%outcome == relax_broken .and. &
-        (outcome%failed - 1)/session%disc%n /= soil_inverted) call fail(session, outcome%failed, status)
+        (outcome%failed - 1)/session%disc%n /= soil_inverted) &
+      call fail(session, outcome%failed, status)
   end subroutine storm_step
 
   !> Move the water for a time, with the soil at rest in its present shape.

@@ -63,7 +63,8 @@ contains
     type(table_t), intent(inout) :: t
 
     call group(t, 'boundary', .true., .false., &
-               'A part of the boundary and what acts there; a later one overrides an earlier one.')
+               'A part of the boundary and what acts there. Supports and loads add up; '// &
+               'of its conditions for water the last counts.')
     call key(t, 'name', 'string', '', '', '', 'Name, for messages and summaries.')
     call key(t, 'where', 'string', '', '*', 'left|right|bottom|top|face|surface|box|all', &
              'Which part: a side, the face of a slope, the surface (top and face), a box or all.')
@@ -121,7 +122,7 @@ contains
              'Step of the storm clock between two equilibria of the soil.', 'kind=storm')
     call key(t, 'storm_step_minimum', 'real', 's', '~storm_step/64', '(0, 1e9]', &
              'Smallest step when the time of failure is bisected.', 'kind=storm')
-    call key(t, 'tolerance', 'real', '', '1e-4', '(0, 0.1]', &
+    call key(t, 'tolerance', 'real', '', '1e-5', '(0, 0.1]', &
              'Out-of-balance force over applied force that counts as equilibrium.', still)
     call key(t, 'steps_max', 'integer', '', '100000', '[1, 2000000000]', &
              'Most steps of one relaxation.', still)

@@ -124,7 +124,7 @@ contains
              'Smallest step when the time of failure is bisected.', 'kind=storm')
     call key(t, 'tolerance', 'real', '', '1e-5', '(0, 0.1]', &
              'Out-of-balance force over applied force that counts as equilibrium.', still)
-    call key(t, 'steps_max', 'integer', '', '100000', '[1, 2000000000]', &
+    call key(t, 'steps_max', 'integer', '', '20000', '[1, 2000000000]', &
              'Most steps of one relaxation.', still)
     call key(t, 'damping', 'real', '', '0', '[0, 0.99]', &
              'Local damping, a fraction of the out-of-balance force; relaxations are damped critically as well.')

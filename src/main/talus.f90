@@ -11,6 +11,7 @@ program talus
   use talus_deck_manual, only: manual_keys, manual_markdown
   use talus_check, only: check_deck
   use talus_run, only: run_deck
+  use talus_bench, only: bench
   use talus_place, only: place_results
   use talus_version, only: version, git_hash
   use omp_lib, only: omp_set_num_threads
@@ -45,6 +46,8 @@ program talus
     case ('manual')
       call manual_markdown(text)
       write (*, '(a)', advance='no') text
+    case ('bench')
+      call bench(command%quick, command%output, status)
     case ('version')
       write (*, '(5a)') 'talus ', version, ' (', git_hash, ')'
     case default

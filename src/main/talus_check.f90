@@ -102,6 +102,7 @@ contains
     call line('state and its copy', cost%state)
     call line('within a step', cost%step)
     call line('seepage', cost%seepage)
+    call line('implicit seepage', cost%matrix)
 
   contains
 

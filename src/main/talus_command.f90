@@ -7,12 +7,13 @@ module talus_command
   public :: command_t, command_read, command_help
 
   type :: command_t
-    character(:), allocatable :: word     !! run, check, keys, manual, version or help
+    character(:), allocatable :: word     !! run, check, keys, manual, bench, version or help
     character(:), allocatable :: argument !! deck, or group of `keys`
     character(:), allocatable :: output   !! folder for results, '' for the deck's
     integer :: threads = 0                !! 0: the deck's or the environment's
     logical :: overwrite = .false.
     logical :: spectrum = .false.         !! check: all eigenvalues
+    logical :: quick = .false.            !! bench: one size only
   end type command_t
 
 contains
@@ -30,14 +31,14 @@ contains
     if (command_argument_count() == 0) return
     command%word = argument(1)
     select case (command%word)
-    case ('run', 'check', 'keys', 'manual', 'version', 'help')
+    case ('run', 'check', 'keys', 'manual', 'bench', 'version', 'help')
     case ('--version', '-V')
       command%word = 'version'
     case ('--help', '-h')
       command%word = 'help'
     case default
       call status_set(status, status_deck, 'unknown word "'//command%word// &
-        '"; allowed: run, check, keys, manual, version, help')
+        '"; allowed: run, check, keys, manual, bench, version, help')
       return
     end select
     i = 2
@@ -48,17 +49,20 @@ contains
         command%overwrite = .true.
       case ('--spectrum')
         command%spectrum = .true.
+      case ('--quick')
+        command%quick = .true.
       case ('--threads')
         call read_threads(i + 1, command%threads, status)
         i = i + 1
       case ('--output')
         command%output = argument(i + 1)
-        if (len(command%output) == 0) call status_set(status, status_deck, '--output needs a folder')
+        if (len(command%output) == 0) call status_set(status, status_deck, &
+          '--output needs a folder')
         i = i + 1
       case default
         if (word(:min(1, len(word))) == '-' .or. len(command%argument) > 0) then
           call status_set(status, status_deck, 'unexpected "'//word//'" after '//command%word// &
-            '; allowed: one deck, --threads N, --output DIR, --overwrite, --spectrum')
+            '; allowed: one deck, --threads N, --output DIR, --overwrite, --spectrum, --quick')
         else
           command%argument = word
         end if
@@ -104,6 +108,7 @@ contains
       '  talus check DECK [--spectrum]   resolved deck, what is active and what it costs', &
       '  talus keys [GROUP]              every key with its unit, default and range', &
       '  talus manual                    the same as Markdown (input/README.md)', &
+      '  talus bench [--quick] [--output DIR]   how fast, and what each part costs', &
       '  talus version', '  talus help', '', &
       'exit codes: 0 done, 1 files could not be read or written, 2 bad input, 3 numerical failure'
   end subroutine command_help

@@ -16,7 +16,8 @@ module talus_cost
     integer(i8) :: stabilise = 0_i8 !! pairs of the stabilisation
     integer(i8) :: state = 0_i8     !! fields, and their copy to fall back on
     integer(i8) :: step = 0_i8      !! fields within a step, and of the motion
-    integer(i8) :: seepage = 0_i8   !! fluxes, and the band matrix of an implicit step
+    integer(i8) :: seepage = 0_i8   !! fluxes
+    integer(i8) :: matrix = 0_i8    !! band matrix of an implicit step of the water, if one is taken
     integer(i8) :: total = 0_i8
   end type cost_t
 
@@ -54,19 +55,22 @@ contains
       cost%state = 2_i8*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
         + bytes(work%stabilising) + bytes(work%force) + 32_i8*int(disc%n, i8)
-      ! Eleven numbers a face and six a node besides the matrix.
-      if (session%ground%wet) cost%seepage = 8_i8*(11_i8*int(size(disc%dual%edge_node, 2), i8) &
-        + (6_i8 + 3_i8*band + 1_i8)*int(disc%n, i8))
+      if (session%ground%wet) then
+        ! Eleven numbers a face and six a node besides the matrix.
+        cost%seepage = 8_i8*(11_i8*int(size(disc%dual%edge_node, 2), i8) + 6_i8*int(disc%n, i8))
+        cost%matrix = 8_i8*(3_i8*band + 1_i8)*int(disc%n, i8)
+      end if
     end associate
     cost%total = cost%cells + cost%first + cost%second + cost%stabilise + cost%state + cost%step &
-      + cost%seepage
+      + cost%seepage + cost%matrix
   end function cost_of
 
   !> Bytes of a state.
   pure integer(i8) function state_bytes(state) result(total)
     type(state_t), intent(in) :: state
 
-    total = bytes(state%u) + bytes(state%u_zero) + bytes(state%v) + bytes(state%acceleration) &
+    total = bytes(state%volume_work) &
+      + bytes(state%u) + bytes(state%u_zero) + bytes(state%v) + bytes(state%acceleration) &
       + bytes(state%f) + bytes(state%f_drive) + bytes(state%stress) + bytes(state%strain) &
       + bytes(state%history) + bytes(state%stiffness) + bytes(state%stiffness_old) &
       + bytes(state%stabilising) + bytes(state%stabilising_lost) + bytes(state%damped) &

@@ -46,8 +46,9 @@ contains
     end do
     call setup_ground(deck, session%ground, status)
     if (status_failed(status)) return
-    call setup_disc(deck, session%ground, session%disc, status)
+    call setup_disc(deck, session%ground, session%disc, session%timer, status)
     if (status_failed(status)) return
+    call timer_start(session%timer, 'set_up_start')
     call state_allocate(session%state, session%disc, session%ground)
     call work_allocate(session%work, session%disc)
     call place_probes(session, status)
@@ -58,6 +59,7 @@ contains
       if (status_failed(status)) return
     end do
     call start_state(session, status)
+    call timer_stop(session%timer, 'set_up_start')
     call timer_stop(session%timer, 'set_up')
   end subroutine run_prepare
 

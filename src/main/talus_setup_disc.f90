@@ -17,33 +17,43 @@ module talus_setup_disc
   use talus_two_level, only: two_level_build, weights_symmetric, weights_rk, weights_area
   use talus_stabilise, only: stabilise_build
   use talus_disc, only: disc_t
+  use talus_timer, only: timer_t, timer_start, timer_stop
   implicit none
   private
   public :: setup_disc
 
 contains
 
-  !> Nodes, cells and operators.
-  subroutine setup_disc(deck, ground, disc, status)
+  !> Nodes, cells and operators, each timed.
+  subroutine setup_disc(deck, ground, disc, timer, status)
     type(deck_t), intent(in) :: deck
     type(ground_t), intent(in) :: ground
     type(disc_t), intent(out) :: disc
+    type(timer_t), intent(inout) :: timer
     type(status_t), intent(inout) :: status
     real(dp), allocatable :: support(:)
     integer, allocatable :: old_number(:)
 
+    call timer_start(timer, 'set_up_nodes')
     call make_mesh(deck, disc%mesh, status)
     if (status_failed(status)) return
     call mesh_perturb(disc%mesh, deck%nodes%perturbation, deck%nodes%seed, .false.)
     call mesh_renumber(disc%mesh, old_number)
     disc%n = size(disc%mesh%x, 2)
+    call timer_stop(timer, 'set_up_nodes')
+    call timer_start(timer, 'set_up_cells')
     call dual_build(disc%dual, disc%mesh, status)
     if (status_failed(status)) return
     call assign_soils(deck, disc, status)
     support = deck%nodes%support*dual_spacing(disc%dual, disc%mesh)
+    call timer_stop(timer, 'set_up_cells')
+    call timer_start(timer, 'set_up_first_level')
     call scni_build(disc%scni, disc%mesh, disc%dual, support, status)
+    call timer_stop(timer, 'set_up_first_level')
     if (status_failed(status)) return
+    call timer_start(timer, 'set_up_smoothing')
     call build_smoothing(deck, ground, support/deck%nodes%support, disc, status)
+    call timer_stop(timer, 'set_up_smoothing')
   end subroutine setup_disc
 
   !> Second level and stabilisation.

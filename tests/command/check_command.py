@@ -21,7 +21,7 @@ CASES = [
     (["keys", "nodes"], 0, "spacing"),
     (["keys", "nodse"], 2, "nodes"),
     (["manual"], 0, "youngs_modulus"),
-    (["walk"], 2, 'unknown word "walk"; allowed: run, check, keys, manual, version, help'),
+    (["walk"], 2, 'unknown word "walk"; allowed: run, check, keys, manual, bench, version, help'),
     (["run"], 2, "run needs a deck: talus run DECK"),
     (["check"], 2, "check needs a deck: talus check DECK"),
     (["run", "a.nml", "b.nml"], 2, 'unexpected "b.nml" after run'),

@@ -1,0 +1,134 @@
+! SPDX-License-Identifier: MIT
+!> The same soil step as talus_soil_step, with the clock read after each phase, and blocks of steps
+!> that are timed as a whole.
+module talus_bench_step
+  use talus_kinds, only: dp, i8
+  use talus_disc, only: disc_t
+  use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_session, only: session_t
+  use talus_soil_step, only: work_t, motion_t, soil_step
+  use talus_strain, only: strain_first, strain_one_level
+  use talus_smooth, only: smooth_gradient, smooth_stress
+  use talus_stress_update, only: stress_update
+  use talus_residual, only: residual_gather
+  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity
+  use talus_seepage, only: seepage_advance
+  use talus_audit, only: energies_t, audit_energies
+  use talus_timer, only: timer_now
+  use talus_bench_bytes, only: phases, phase_strain, phase_second, phase_stress, phase_stabilise, &
+    phase_adjoint, phase_force
+  implicit none
+  private
+  public :: step_timed, block_seconds, block_phases, seepage_seconds
+
+contains
+
+  !> One soil step; adds the time of each phase.
+  subroutine step_timed(disc, ground, motion, state, work, seconds, failed)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    real(dp), intent(inout) :: seconds(phases) !! [s]
+    integer, intent(out) :: failed
+    real(dp) :: began
+
+    failed = 0
+    began = timer_now()
+    !$omp parallel default(none) shared(disc, ground, motion, state, work, failed, seconds, began)
+    call motion_position(motion%step, state%v, state%u)
+    call strain_first(disc%scni, state%u, work%y)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call mark(seconds(phase_strain), began)
+      call smooth_gradient(disc%two_level, work%y, work%h)
+      call mark(seconds(phase_second), began)
+    else
+      call strain_one_level(disc%dual%area, work%y, work%h)
+      call mark(seconds(phase_strain), began)
+    end if
+    call stress_update(disc, ground, motion%coupled, work%h, work%drive, state, work%q, failed)
+    call mark(seconds(phase_stress), began)
+    if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+      state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
+    call mark(seconds(phase_stabilise), began)
+    if (disc%two_levels .and. .not. disc%damage_only) then
+      call smooth_stress(disc%two_level, work%q, work%y)
+    else
+      call force_one_level(disc%dual%area, work%q, work%y)
+    end if
+    call mark(seconds(phase_adjoint), began)
+    call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
+    call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
+                         state%v, state%acceleration, state%damped)
+    call mark(seconds(phase_force), began)
+    !$omp end parallel
+    state%steps = state%steps + 1_i8
+  end subroutine step_timed
+
+  !> Add the time since `began`, and begin again. All threads have passed the barrier of a loop.
+  subroutine mark(seconds, began)
+    real(dp), intent(inout) :: seconds, began !! [s]
+    real(dp) :: now
+
+    !$omp master
+    now = timer_now()
+    seconds = seconds + (now - began)
+    began = now
+    !$omp end master
+  end subroutine mark
+
+  !> Time of one step [s], from `steps` steps that start at the state saved in the session.
+  real(dp) function block_seconds(session, steps, audit) result(each)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: steps
+    logical, intent(in) :: audit !! all energies after every step
+    type(energies_t) :: energies
+    real(dp) :: began
+    integer :: i, failed
+
+    session%state = session%last_good
+    began = timer_now()
+    do i = 1, steps
+      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
+        failed)
+      if (audit) energies = audit_energies(session%disc, session%ground, session%motion, &
+        session%state)
+    end do
+    each = (timer_now() - began)/real(steps, dp)
+    ! Keep the account in use, so that it is not left out.
+    if (audit) session%energies_start = energies
+  end function block_seconds
+
+  !> Time of each phase in one step [s].
+  function block_phases(session, steps) result(seconds)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: steps
+    real(dp) :: seconds(phases)
+    integer :: i, failed
+
+    session%state = session%last_good
+    seconds = 0.0_dp
+    do i = 1, steps
+      call step_timed(session%disc, session%ground, session%motion, session%state, session%work, &
+                      seconds, failed)
+    end do
+    seconds = seconds/real(steps, dp)
+  end function block_phases
+
+  !> Time of one sub-step of the water [s]: explicit, just below the step that is stable.
+  real(dp) function seepage_seconds(session, water_step) result(each)
+    type(session_t), intent(inout) :: session
+    real(dp), intent(in) :: water_step !! stable step [s]
+    real(dp) :: began
+    integer(i8) :: before
+
+    session%state = session%last_good
+    before = session%state%seepage_steps
+    began = timer_now()
+    call seepage_advance(session%seepage, session%disc, session%ground, session%conditions%inlets, &
+                         0.0_dp, 0.9_dp*water_step, session%state)
+    each = (timer_now() - began)/real(max(1_i8, session%state%seepage_steps - before), dp)
+  end function seepage_seconds
+end module talus_bench_step

@@ -36,6 +36,10 @@ def figures_of(result, folder, dpi):
     path = str(result.path)
     best = default_field(result)
     plan = [(plot_field, f"{name}", ["--field", name]) for name in MAPS if result.has(name)]
+    for snapshot in result.snapshots:
+        if snapshot.name.startswith("mechanism"):
+            options = ["--field", "plastic_strain", "--snapshot", snapshot.name]
+            plan.append((plot_field, f"plastic_strain_{snapshot.name}", options))
     plan.append((plot_sequence, f"{best}_sequence", ["--field", best]))
     if result.has("pore_pressure"):
         plan.append((plot_sequence, "pore_pressure_sequence", ["--field", "pore_pressure"]))

@@ -30,7 +30,7 @@ def parser():
     options = parser_of(__doc__)
     add_map_options(options)
     when = options.add_mutually_exclusive_group()
-    when.add_argument("--snapshot", help="number or name; -1 is the last (default), or last_good")
+    when.add_argument("--snapshot", help="number or name; -1 is the last (default), last_good, mechanism")
     when.add_argument("--time", type=seconds, help="nearest snapshot to a time: 5400, 90min, 1.5h")
     return options
 

@@ -3,7 +3,7 @@
 module talus_deck_check_stage
   use talus_kinds, only: dp
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, stage_t, deck_given, deck_exceeds, deck_acts_in
+  use talus_deck_types, only: deck_t, stage_t, soil_t, deck_given, deck_exceeds, deck_acts_in
   use talus_deck_store, only: store_t, store_sections
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
@@ -54,6 +54,10 @@ contains
         call complain(store, section, 'solve', &
             'a geostatic stage keeps the initial pore pressure', &
                       messages, '''soil'' with kind = ''geostatic''')
+      else if (stage%kind == 'strength_reduction') then
+        call complain(store, section, 'solve', &
+            'strength is divided at the pore pressure of that moment', &
+                      messages, '''soil'' with kind = ''strength_reduction''')
       end if
     end if
     if (stage%kind == 'dynamic' .and. stage%solve == 'seepage') then
@@ -104,13 +108,17 @@ contains
           call complain(store, section, 'after_failure', 'no dynamic stage follows', messages, &
                         '''stop'', or a later &stage with kind = ''dynamic''')
         end if
-        if (stage%solve /= 'seepage' .and. deck%initial%stress == 'none' .and. &
-            deck_exceeds(deck%run%gravity, 0.0_dp) .and. &
-            .not. any(kind_is(deck%stage(:i-1), 'geostatic'))) then
+        if (stage%solve /= 'seepage' .and. starts_weightless(deck, i)) &
           call warn(store, section, 'kind', &
               'no geostatic stage before it and no initial stress: '// &
                     'settlement under the own weight comes with the storm', messages)
-        end if
+      case ('strength_reduction')
+        if (.not. any(is_plastic(deck%soil))) call complain(store, section, 'kind', &
+            'no soil has a strength to divide', messages, &
+            'a &soil with plasticity = ''drucker_prager''')
+        if (starts_weightless(deck, i)) call warn(store, section, 'kind', &
+            'no geostatic stage before it and no initial stress: '// &
+                  'every trial feels the jolt of its own weight', messages)
       case ('dynamic')
         if (.not. stage%only_after_failure) return
         can_start = .false.
@@ -124,6 +132,23 @@ contains
       end select
     end associate
   end subroutine check_order
+
+  !> True when a stage is the first to feel gravity.
+  pure logical function starts_weightless(deck, i)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i !! the stage
+
+    starts_weightless = deck%initial%stress == 'none' .and. &
+      deck_exceeds(deck%run%gravity, 0.0_dp) .and. &
+      .not. any(kind_is(deck%stage(:i-1), 'geostatic'))
+  end function starts_weightless
+
+  !> Which soils have a strength.
+  elemental logical function is_plastic(soil)
+    type(soil_t), intent(in) :: soil
+
+    is_plastic = soil%plasticity /= 'none'
+  end function is_plastic
 
   !> Which stages are of a kind.
   elemental logical function kind_is(stage, kind)

@@ -63,7 +63,7 @@ contains
     character(:), allocatable :: kind
 
     kind = store%section(section)%value(store_value(store, section, 'kind'))%s
-    if (has_water .and. kind /= 'geostatic') then
+    if (has_water .and. kind /= 'geostatic' .and. kind /= 'strength_reduction') then
       call default_text(store, section, 'solve', 'both')
     else
       call default_text(store, section, 'solve', 'soil')

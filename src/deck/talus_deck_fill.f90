@@ -242,6 +242,8 @@ contains
     call get(store, s, 'duration', stage%duration)
     call get(store, s, 'storm_step', stage%storm_step)
     call get(store, s, 'storm_step_minimum', stage%storm_step_minimum)
+    call get(store, s, 'factor_first', stage%factor_first)
+    call get(store, s, 'factor_tolerance', stage%factor_tolerance)
     call get(store, s, 'tolerance', stage%tolerance)
     call get(store, s, 'steps_max', stage%steps_max)
     call get(store, s, 'damping', stage%damping)

@@ -108,20 +108,28 @@ contains
   !> Keys of &stage.
   subroutine keys_add_stage(t)
     type(table_t), intent(inout) :: t
-    character(*), parameter :: timed = 'kind=storm|dynamic', still = 'kind=geostatic|storm'
+    character(*), parameter :: timed = 'kind=storm|dynamic', &
+      reduced = 'kind=strength_reduction', still = 'kind=geostatic|storm|strength_reduction'
 
     call group(t, 'stage', .true., .true., &
         'A part of the run; stages follow in the order of the deck.')
     call key(t, 'name', 'string', '', '*', '', 'Name, used by &boundary and in the results.')
-    call key(t, 'kind', 'string', '', '*', 'geostatic|storm|dynamic', &
-             'Relax to equilibrium; a storm of hours with soil in equilibrium; or real time.')
-    call key(t, 'solve', 'string', '', '~soil without &water or if geostatic, else both', &
+    call key(t, 'kind', 'string', '', '*', 'geostatic|storm|dynamic|strength_reduction', &
+             'Relax to equilibrium; a storm of hours with soil in equilibrium; real time; or the '// &
+             'factor of safety of the soil as it is.')
+    call key(t, 'solve', 'string', '', &
+             '~soil without &water or if geostatic or strength_reduction, else both', &
              'soil|seepage|both', 'What moves: the soil, the water or both.')
     call key(t, 'duration', 'real', 's', '*', '(0, 1e11]', 'Simulated time of the stage.', timed)
     call key(t, 'storm_step', 'real', 's', '*', '(0, 1e9]', &
              'Step of the storm clock between two equilibria of the soil.', 'kind=storm')
     call key(t, 'storm_step_minimum', 'real', 's', '~storm_step/64', '(0, 1e9]', &
              'Smallest step when the time of failure is bisected.', 'kind=storm')
+    call key(t, 'factor_first', 'real', '', '1', '[0.02, 50]', &
+             'First factor that divides the strength; where the soil does not stand there, '// &
+             'smaller ones follow.', reduced)
+    call key(t, 'factor_tolerance', 'real', '', '0.01', '[1e-4, 1]', &
+             'Largest distance of the factors at which the soil stands and fails.', reduced)
     call key(t, 'tolerance', 'real', '', '1e-5', '(0, 0.1]', &
              'Out-of-balance force over applied force that counts as equilibrium.', still)
     call key(t, 'steps_max', 'integer', '', '20000', '[1, 2000000000]', &
@@ -133,8 +141,9 @@ contains
     call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
              'Time step over the largest stable one.')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
-             'Displacement in a storm step that counts as failure; absent: none does.', &
-             'kind=storm')
+             'Displacement in a storm step, or a trial of strength reduction, that counts as '// &
+             'failure; absent: in a storm none, else 4 times unit weight, mean depth squared over '// &
+             'Young''s modulus.', 'kind=storm|strength_reduction')
     call key(t, 'after_failure', 'string', '', &
              '~dynamic_next if a dynamic stage follows, else stop', 'dynamic_next|stop', &
              'On failure go on with the next dynamic stage, or stop the run.', 'kind=storm')

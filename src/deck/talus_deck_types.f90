@@ -98,7 +98,8 @@ module talus_deck_types
 
   type :: stage_t
     character(:), allocatable :: name, kind, solve
-    real(dp) :: duration, storm_step, storm_step_minimum, tolerance
+    real(dp) :: duration, storm_step, storm_step_minimum
+    real(dp) :: factor_first, factor_tolerance, tolerance
     integer :: steps_max
     real(dp) :: damping
     logical :: mass_scaling

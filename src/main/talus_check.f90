@@ -208,6 +208,10 @@ contains
         steps = 25.0_dp + 7.0_dp*across
       case ('storm')
         steps = (25.0_dp + across)*stage%duration/stage%storm_step
+      case ('strength_reduction')
+        ! Next to the factor of safety a trial takes long.
+        steps = 100.0_dp*across*(3.0_dp &
+          + log(max(1.0_dp, 0.25_dp*stage%factor_first/stage%factor_tolerance))/log(2.0_dp))
       case default
         steps = stage%duration/session%motion%step
       end select

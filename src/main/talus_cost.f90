@@ -52,7 +52,8 @@ contains
         + bytes(disc%two_level%s) + bytes(disc%two_level%sa)
       cost%stabilise = bytes(disc%stabilise%offset) + bytes(disc%stabilise%node) &
         + bytes(disc%stabilise%reach) + bytes(disc%stabilise%stiffness)
-      cost%state = 2_i8*state_bytes(session%state)
+      ! Strength reduction also keeps the state of its mechanism.
+      cost%state = merge(3_i8, 2_i8, allocated(session%reduction))*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
         + bytes(work%stabilising) + bytes(work%force) + 32_i8*int(disc%n, i8)
       if (session%ground%wet) then

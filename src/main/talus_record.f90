@@ -18,7 +18,7 @@ module talus_record
   use talus_progress, only: progress_show
   implicit none
   private
-  public :: record_start, record_line, record_snapshot, record_last_good
+  public :: record_start, record_line, record_snapshot, record_named, record_last_good
 
   integer, parameter :: letters = 64, most_columns = 400
 
@@ -102,6 +102,10 @@ contains
         call add('energy_external', 'J/m', energies%external)
         call add('energy_error', '1', audit_energy_error(session%energies_start, energies))
       end if
+      if (allocated(session%reduction)) then
+        call add('factor', '1', session%factor)
+        call add('factor_stands', '1', merge(1.0_dp, 0.0_dp, session%stands))
+      end if
       if (session%ground%wet) then
         call add('water_in', 'm3/m', state%water%inflow)
         call add('water_out', 'm3/m', state%water%outflow)
@@ -148,17 +152,31 @@ contains
     call timer_stop(session%timer, 'output')
   end subroutine record_snapshot
 
+  !> Write a state apart from the numbered ones, and the history so far.
+  subroutine record_named(session, name, state, status)
+    type(session_t), intent(inout) :: session
+    character(*), intent(in) :: name !! of the snapshot
+    type(state_t), intent(in) :: state
+    type(status_t), intent(inout) :: status
+
+    call timer_start(session%timer, 'output')
+    call snapshot_begin_named(session%result, name, state%time, &
+      session%deck%stage(session%stage)%name, int(state%steps), status)
+    call write_fields(session, state, status)
+    call snapshot_end(session%result, status)
+    call history_store(session%history, session%result%path, status)
+    call timer_stop(session%timer, 'output')
+  end subroutine record_named
+
   !> Write the last good state, after the numbers failed. The status keeps the failure.
   subroutine record_last_good(session)
     type(session_t), intent(inout) :: session
+    type(state_t) :: state
     type(status_t) :: status
 
     if (.not. allocated(session%last_good%u)) return
-    call snapshot_begin_named(session%result, 'last_good', session%last_good%time, &
-      session%deck%stage(session%stage)%name, int(session%last_good%steps), status)
-    call write_fields(session, session%last_good, status)
-    call snapshot_end(session%result, status)
-    call history_store(session%history, session%result%path, status)
+    state = session%last_good
+    call record_named(session, 'last_good', state, status)
   end subroutine record_last_good
 
   !> All active fields of a state.

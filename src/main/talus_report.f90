@@ -11,6 +11,7 @@ module talus_report
   use talus_strength, only: strength_cone
   use talus_drucker_prager, only: cone_t
   use talus_summary, only: summary_create, summary_set, summary_write
+  use talus_report_factor, only: report_factors
   use talus_timer, only: timer_seconds, timer_names
   use talus_version, only: version, git_hash
   implicit none
@@ -36,6 +37,7 @@ contains
       call report_model(session)
       call report_cost(session)
       call report_answers(session)
+      call report_factors(session)
       call summary_write(summary, status)
     end associate
   end subroutine report_summary
@@ -87,7 +89,8 @@ contains
         call summary_set(summary, 'wall_seconds_'//trim(names(i)), &
                          timer_seconds(session%timer, trim(names(i))))
       end do
-      soil = timer_seconds(session%timer, 'soil') + timer_seconds(session%timer, 'geostatic')
+      soil = timer_seconds(session%timer, 'soil') + timer_seconds(session%timer, 'geostatic') &
+        + timer_seconds(session%timer, 'strength_reduction')
       if (soil > 0.0_dp) call summary_set(summary, 'node_steps_per_second', &
         real(session%disc%n, dp)*real(state%steps, dp)/soil)
       call summary_set(summary, 'peak_memory_bytes', peak_memory_bytes())

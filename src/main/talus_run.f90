@@ -43,6 +43,8 @@ contains
     session%soil_moves = .false.
     do i = 1, size(deck%stage)
       session%soil_moves = session%soil_moves .or. deck%stage(i)%solve /= 'seepage'
+      if (deck%stage(i)%kind == 'strength_reduction' .and. .not. allocated(session%reduction)) &
+        allocate (session%reduction(0))
     end do
     call setup_ground(deck, session%ground, status)
     if (status_failed(status)) return

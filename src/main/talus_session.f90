@@ -9,6 +9,7 @@ module talus_session
   use talus_conditions, only: conditions_t
   use talus_soil_step, only: work_t, motion_t
   use talus_seepage, only: seepage_t
+  use talus_relax, only: relax_t
   use talus_audit, only: energies_t
   use talus_timer, only: timer_t
   use talus_result, only: result_t
@@ -17,7 +18,17 @@ module talus_session
   use talus_progress, only: progress_t
   implicit none
   private
-  public :: session_t
+  public :: session_t, reduction_t
+
+  !> What a stage of strength reduction found.
+  type :: reduction_t
+    integer :: stage = 0             !! its number
+    real(dp) :: lower = -1.0_dp      !! largest factor that stands; -1: none found [-]
+    real(dp) :: upper = -1.0_dp      !! smallest factor that does not; -1: none found [-]
+    integer :: trials = 0
+    real(dp) :: moved_max = huge(1.0_dp) !! displacement that counts as failure [m]
+    type(relax_t) :: stood, fell     !! relaxations at `lower` and `upper`
+  end type reduction_t
 
   type :: session_t
     type(deck_t) :: deck
@@ -37,6 +48,9 @@ module talus_session
     logical :: lost = .false.               !! the latest storm ended in failure
     logical :: failed = .false.             !! some storm ended in failure
     real(dp) :: trigger_time = -1.0_dp      !! when it was lost first [s]; -1: never
+    real(dp) :: factor = 1.0_dp             !! that divides the strength in the present trial
+    logical :: stands = .true.              !! outcome of the latest trial of a factor
+    type(reduction_t), allocatable :: reduction(:) !! of each stage of strength reduction so far
     real(dp) :: staggering = 0.0_dp         !! greatest audit_staggering of all storm steps
     real(dp) :: worst_water_error = 0.0_dp  !! over all storms
     real(dp) :: worst_energy_error = 0.0_dp !! over all dynamic stages

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The three kinds of stage (src/THEORY.md sections 5.3, 5.6 and 5.7): each is the ordered list of
-!> what happens; the work is in step/.
+!> The kinds of stage (src/THEORY.md sections 5.3, 5.6 and 5.7; for 5.9 see
+!> talus_strength_reduction): each is the ordered list of what happens; the work is in step/.
 module talus_stages
   use talus_kinds, only: dp, i8
   use talus_status, only: status_t, status_set, status_failed, status_numeric
@@ -19,6 +19,7 @@ module talus_stages
   use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, audit_staggering, &
     energies_t
   use talus_soil_law, only: soil_inverted
+  use talus_strength_reduction, only: strength_reduction
   use talus_record, only: record_line, record_snapshot, record_last_good
   use talus_progress, only: progress_start, progress_end, progress_say
   use talus_timer, only: timer_start, timer_stop
@@ -44,6 +45,7 @@ contains
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number !! of the stage
     type(status_t), intent(inout) :: status
+    integer :: failed
 
     session%stage = number
     associate (stage => session%deck%stage(number))
@@ -57,6 +59,9 @@ contains
         call run_geostatic(session, stage, status)
       case ('storm')
         call run_storm(session, stage, status)
+      case ('strength_reduction')
+        call strength_reduction(session, stage, failed, status)
+        if (failed > 0) call fail(session, failed, status)
       case default
         call run_dynamic(session, stage, status)
       end select

@@ -47,11 +47,13 @@ module talus_strength
     real(dp), allocatable :: table_dilation_angle(:)      !! [rad]
     real(dp) :: phi_b = 0.0_dp                            !! [rad]
     real(dp) :: suction_cohesion_max = huge(1.0_dp)       !! cap of the suction's part [Pa]
+    real(dp) :: factor = 1.0_dp !! F > 0 that divides cohesion, tan(phi) and suction's part [-]
     type(shape_t), private :: peak                        !! before any plastic strain
     type(shape_t), private :: residual                    !! where nothing changes any more
     real(dp), private :: peak_until = 0.0_dp              !! plastic strain where `peak` ends [-]
     real(dp), private :: constant_from = huge(1.0_dp)     !! plastic strain of `residual` [-]
-    real(dp), private :: tan_phi_b = 0.0_dp               !! [-]
+    real(dp), private :: tan_phi_b = 0.0_dp               !! divided by the factor [-]
+    real(dp), private :: added_most = huge(1.0_dp)        !! cap divided by the factor [Pa]
   end type strength_t
 
 contains
@@ -64,7 +66,10 @@ contains
     call check_ranges(strength, status)
     if (strength%softening == softening_table) call check_table(strength, status)
     if (status_failed(status)) return
-    strength%tan_phi_b = tan(strength%phi_b)
+    strength%tan_phi_b = tan(strength%phi_b)/strength%factor
+    strength%added_most = strength%suction_cohesion_max
+    if (strength%added_most < 1.0e-9_dp*huge(1.0_dp)) &
+      strength%added_most = strength%added_most/strength%factor
     strength%peak_until = 0.0_dp
     select case (strength%softening)
     case (softening_none)
@@ -97,6 +102,8 @@ contains
       'phi_b must lie in [0, 90) degrees', status)
     call need(strength%suction_cohesion_max >= 0.0_dp, &
       'suction_cohesion_max must not be negative', status)
+    call need(strength%factor > 0.0_dp, 'the factor that divides strength must be positive', &
+      status)
     if (strength%softening /= softening_linear .and. &
       strength%softening /= softening_exponential) return
     call need(strength%softening_strain > 0.0_dp, 'softening_strain must be positive, not ' &
@@ -192,7 +199,7 @@ contains
     else if (strength%suction == suction_strength_vanapalli) then
       added = max(0.0_dp, suction)*saturation*shape%tan_phi
     end if
-    added = min(added, strength%suction_cohesion_max)
+    added = min(added, strength%added_most)
     cone%alpha = shape%alpha
     cone%alpha_psi = shape%alpha_psi
     call cone_set(cone, (shape%cohesion + added)*shape%k_over_c, strength%tension_cutoff)
@@ -212,7 +219,8 @@ contains
     shape%tan_phi = sin_phi/cos_phi
   end subroutine shape_at
 
-  !> Softened cohesion and angles at an equivalent plastic strain.
+  !> Softened cohesion and angles at an equivalent plastic strain, divided by the factor. Dilation
+  !> stays, but for an angle that would exceed that of the divided friction.
   pure subroutine strength_at(strength, eqps, cohesion, phi, psi)
     type(strength_t), intent(in) :: strength
     real(dp), intent(in) :: eqps      !! equivalent plastic strain [-]
@@ -236,6 +244,11 @@ contains
       psi = left*strength%dilation_angle + (1.0_dp - left)*strength%residual_dilation_angle
     end select
     if (eqps >= strength%dilation_limit) psi = 0.0_dp
+    if (abs(strength%factor - 1.0_dp) > 0.0_dp) then
+      cohesion = cohesion/strength%factor
+      phi = atan(tan(phi)/strength%factor)
+      psi = min(psi, phi)
+    end if
   end subroutine strength_at
 
   !> Straight lines between the table's rows; constant beyond its ends.

@@ -1,0 +1,167 @@
+! SPDX-License-Identifier: MIT
+!> A stage of strength reduction (src/THEORY.md section 5.9; Griffiths & Lane 1999): the factor by
+!> which the strength can be divided until the soil finds no equilibrium.
+module talus_strength_reduction
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_failed
+  use talus_text, only: text_of
+  use talus_deck_types, only: stage_t, deck_given
+  use talus_state, only: state_t
+  use talus_session, only: session_t, reduction_t
+  use talus_reduced_ground, only: reduced_ground
+  use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
+  use talus_soil_law, only: soil_inverted
+  use talus_record, only: record_line, record_snapshot, record_named
+  use talus_progress, only: progress_say
+  implicit none
+  private
+  public :: strength_reduction, next_factor
+
+  !> Ratio of two factors until one stands and one fails.
+  real(dp), parameter :: stride = 1.25_dp
+  !> Factors beyond which the search ends.
+  real(dp), parameter :: least = 0.01_dp, most = 100.0_dp
+  !> Displacement that counts as failure, over that of elastic soil under its weight.
+  real(dp), parameter :: failure_share = 4.0_dp
+
+contains
+
+  !> Bracket the factor. The stage ends in the state in which it began.
+  subroutine strength_reduction(session, stage, failed, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    integer, intent(out) :: failed !! 0, or the node whose numbers failed: see soil_step
+    type(status_t), intent(inout) :: status
+    type(reduction_t) :: found
+    type(state_t) :: mechanism
+    real(dp) :: displacement
+    logical :: over
+
+    found%stage = session%stage
+    found%moved_max = failure_displacement(session, stage)
+    displacement = session%greatest_displacement
+    session%last_good = session%state
+    failed = 0
+    call next_factor(stage%factor_first, stage%factor_tolerance, found, session%factor, over)
+    do while (.not. over)
+      call try_factor(session, stage, found, failed)
+      if (failed > 0) return
+      if (.not. session%stands) mechanism = session%state
+      call record_line(session, progress_of(found, stage), status)
+      if (status_failed(status)) return
+      call take_back(session)
+      call next_factor(stage%factor_first, stage%factor_tolerance, found, session%factor, over)
+    end do
+    session%factor = 1.0_dp
+    session%stands = .true.
+    session%greatest_displacement = displacement
+    session%reduction = [session%reduction, found]
+    if (found%upper > 0.0_dp) then
+      call progress_say(session%progress, 'equilibrium lost with strength divided by '// &
+        text_of(found%upper, 4))
+      call record_named(session, mechanism_name(size(session%reduction)), mechanism, status)
+    end if
+    call record_snapshot(session, status)
+  end subroutine strength_reduction
+
+  !> Relax with the strength divided by session%factor.
+  subroutine try_factor(session, stage, found, failed)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(reduction_t), intent(inout) :: found
+    integer, intent(out) :: failed !! 0, or the node whose numbers failed
+    type(relax_t) :: outcome
+
+    failed = 0
+    session%motion%viscous = 0.0_dp
+    call relax(session%disc, reduced_ground(session%ground, session%factor), session%conditions, &
+               session%motion, stage%tolerance, stage%steps_max, found%moved_max, 0.0_dp, &
+               session%state, session%work, outcome)
+    found%trials = found%trials + 1
+    session%stands = outcome%outcome == relax_balanced
+    if (session%stands) then
+      found%lower = session%factor
+      found%stood = outcome
+      return
+    end if
+    found%upper = session%factor
+    found%fell = outcome
+    ! Soil that turns inside out while it looks for equilibrium has found none.
+    if (outcome%outcome == relax_broken .and. &
+        (outcome%failed - 1)/session%disc%n /= soil_inverted) failed = outcome%failed
+  end subroutine try_factor
+
+  !> Displacement that counts as failure [m]: the deck's, or a few times g D^2/E with unit weight g,
+  !> mean depth D and modulus E. Equilibrium is lost in the shape that the soil has now; a slide
+  !> that went further might come to rest in a flatter one.
+  real(dp) function failure_displacement(session, stage) result(displacement)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp) :: weight, area, compliance, width
+
+    displacement = stage%failure_displacement
+    if (deck_given(displacement)) return
+    associate (disc => session%disc, law => session%ground%law)
+      area = sum(disc%dual%area)
+      width = maxval(disc%mesh%x(1, :)) - minval(disc%mesh%x(1, :))
+      weight = sum(abs(session%state%load(2, :)))/area
+      compliance = sum(disc%dual%area/law(disc%soil)%elastic%youngs_modulus)/area
+      displacement = failure_share*weight*compliance*(area/width)**2
+    end associate
+    if (.not. displacement > 0.0_dp) displacement = huge(1.0_dp)
+  end function failure_displacement
+
+  !> The factor to try next: strides up or down until one stands and one fails, then halves.
+  pure subroutine next_factor(first, tolerance, found, factor, over)
+    real(dp), intent(in) :: first     !! factor of the first trial [-]
+    real(dp), intent(in) :: tolerance !! width of the bracket that is asked for [-]
+    type(reduction_t), intent(in) :: found !! by the trials so far
+    real(dp), intent(out) :: factor   !! [-]
+    logical, intent(out) :: over      !! nothing is left to try
+
+    over = .false.
+    factor = first
+    if (found%trials == 0) return
+    if (found%upper < 0.0_dp) then
+      factor = found%lower*stride
+      over = factor > most
+    else if (found%lower < 0.0_dp) then
+      factor = found%upper/stride
+      over = factor < least
+    else
+      factor = 0.5_dp*(found%lower + found%upper)
+      over = found%upper - found%lower <= tolerance*(1.0_dp + 1.0e-9_dp)
+    end if
+  end subroutine next_factor
+
+  !> Part of the trials that is done, about.
+  pure real(dp) function progress_of(found, stage) result(fraction)
+    type(reduction_t), intent(in) :: found
+    type(stage_t), intent(in) :: stage
+    real(dp) :: left
+
+    left = (stride - 1.0_dp)*max(found%lower, found%upper)
+    if (found%lower > 0.0_dp .and. found%upper > 0.0_dp) left = found%upper - found%lower
+    left = log(max(1.0_dp, left/stage%factor_tolerance))/log(2.0_dp)
+    fraction = real(found%trials, dp)/(real(found%trials, dp) + left)
+  end function progress_of
+
+  !> Return to the state at the start; the steps are counted all the same.
+  subroutine take_back(session)
+    type(session_t), intent(inout) :: session
+    integer(i8) :: steps
+
+    steps = session%state%steps
+    session%state = session%last_good
+    session%state%steps = steps
+  end subroutine take_back
+
+  !> Snapshot of the mechanism of each such stage: mechanism, mechanism_2, ...
+  pure function mechanism_name(number) result(name)
+    integer, intent(in) :: number !! of the stage among its kind
+    character(:), allocatable :: name
+
+    name = 'mechanism'
+    if (number > 1) name = name//'_'//text_of(number)
+  end function mechanism_name
+end module talus_strength_reduction

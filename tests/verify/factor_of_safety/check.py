@@ -76,4 +76,22 @@ case.check(f"from above: {factor_of(down):.4f}, change", abs(factor_of(down) - f
            "both brackets hold the same factor")
 factors = down.history()["factor"][down.history()["stage"] == "factor"]
 case.check_true("from above: the first stride goes down", factors[0] == 1.7 and factors[1] < 1.7)
+
+# Factors at several moments of one run, with the pore pressure of each.
+rain = case.run("rain.nml")
+REDUCED = ("before", "after", "late")
+before, after, late = (float(rain.summary[f"factor_of_safety_{stage}"]) for stage in REDUCED)
+print(f"     before the rain {before:.4f}, after {after:.4f}, after {late:.4f} moving on")
+case.check("rain takes suction, and with it safety: after over before", after / before, 0.95, "wetting")
+case.check("0.2 s later: change", abs(late - after), WIDTH, "next to nothing happens in that time")
+DROPPED = [(f"&stage\n  name = '{stage}'\n  kind = 'strength_reduction'\n/\n", "") for stage in REDUCED]
+plain = case.run("rain.nml", DROPPED, name="plain")
+apart = max(abs(rain.field(field) - plain.field(field)).max() / abs(plain.field(field)).max() for field in (
+    "displacement", "stress", "plastic_strain", "pore_pressure", "saturation"))
+case.check("a run with such stages goes on as one without: fields apart, over the largest", apart, 1e-8,
+           "round-off: the stable step of the storm is looked for from another guess")
+moved = [np.hypot(*rain.field("displacement", name).T).max()
+         for name in ("mechanism", "mechanism_2", "mechanism_3")]
+case.check_true(f"each has its mechanism: it moved {moved[0]:.3f}, {moved[1]:.3f}, {moved[2]:.3f} m",
+                min(moved) > 0.1)
 sys.exit(case.verdict())

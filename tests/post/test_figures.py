@@ -113,6 +113,20 @@ class Figures(unittest.TestCase):
         with Image.open(self.folder / "figures" / "tiny_damage.gif") as movie:
             self.assertEqual(movie.n_frames, 3)
 
+    def test_mechanism_of_strength_reduction(self):
+        """Its snapshot has a name and no number, and a figure of its own."""
+        path = self.folder / "reduced" / "tiny.h5"
+        path.parent.mkdir()
+        write_result(path)
+        with h5py.File(path, "a") as file:
+            file.copy("snapshots/000002", "snapshots/mechanism")
+        with Result(path) as result:
+            self.assertEqual(len(result.numbered()), 3)
+            plan = plot_all.figures_of(result, path.parent, 50)
+            options = [o for _, o in plan if "plastic_strain_mechanism" in o[2]]
+            self.assertEqual(len(options), 1)
+            self.assert_drawn(plot_field.draw(result, plot_field.parser().parse_args(options[0])))
+
     def script(self, name, *options):
         """Run one script as a user does."""
         return subprocess.run(

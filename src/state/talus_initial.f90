@@ -12,6 +12,13 @@ module talus_initial
   private
   public :: initial_hydrostatic, initial_water, initial_k0, weight_masses, weight_load
 
+  !> Boundary edges sorted into columns, see column_build.
+  type :: columns_t
+    real(dp) :: left = 0.0_dp, width = 0.0_dp !! [m]
+    integer, allocatable :: offset(:)         !! first entry of each column, (columns+1)
+    integer, allocatable :: edge(:)           !! columns of mesh%boundary_edge
+  end type columns_t
+
 contains
 
   !> Hydrostatic pore pressure about a straight water table, with the suction limited [Pa], (n).
@@ -62,12 +69,14 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: ratio !! [-]
     type(state_t), intent(inout) :: state
+    type(columns_t) :: columns
     real(dp) :: vertical, effective
     integer :: i
 
+    call column_build(disc%mesh, columns)
     do i = 1, disc%n
       vertical = -ground%gravity*state%mass(i)/disc%dual%area(i) &
-        *(ground_level(disc%mesh, disc%mesh%x(1, i)) - disc%mesh%x(2, i))
+        *(ground_level(disc%mesh, columns, disc%mesh%x(1, i)) - disc%mesh%x(2, i))
       if (ground%wet) then
         associate (curve => ground%curve(disc%soil(i)))
           effective = (state%saturation(i) - curve%residual)/(curve%maximum - curve%residual)
@@ -79,17 +88,62 @@ contains
     end do
   end subroutine initial_k0
 
-  !> Elevation of the ground surface at x [m].
-  pure real(dp) function ground_level(mesh, x) result(level)
+  !> Boundary edges above and below each of as many columns of equal width, so that a node need
+  !> look at those of its own column only.
+  pure subroutine column_build(mesh, columns)
     type(mesh_t), intent(in) :: mesh
+    type(columns_t), intent(out) :: columns
+    integer, allocatable :: filled(:)
+    integer :: n, k, c, first, last, pass
+
+    n = max(1, size(mesh%boundary_edge, 2))
+    columns%left = minval(mesh%x(1, :))
+    columns%width = max((maxval(mesh%x(1, :)) - columns%left)/real(n, dp), tiny(1.0_dp))
+    allocate (columns%offset(n+1), filled(n))
+    do pass = 1, 2
+      filled = 0
+      do k = 1, size(mesh%boundary_edge, 2)
+        associate (x => mesh%x(1, mesh%boundary_edge(:, k)))
+          first = column_at(columns, minval(x))
+          last = column_at(columns, maxval(x))
+        end associate
+        do c = first, last
+          if (pass == 2) columns%edge(columns%offset(c) + filled(c)) = k
+          filled(c) = filled(c) + 1
+        end do
+      end do
+      if (pass == 2) exit
+      columns%offset(1) = 1
+      do c = 1, n
+        columns%offset(c+1) = columns%offset(c) + filled(c)
+      end do
+      allocate (columns%edge(columns%offset(n+1)-1))
+    end do
+  end subroutine column_build
+
+  !> Column that holds x. It never falls as x grows, so an edge lies in the columns of its ends and
+  !> all between them.
+  pure integer function column_at(columns, x) result(c)
+    type(columns_t), intent(in) :: columns
+    real(dp), intent(in) :: x !! [m]
+
+    c = 1 + int((x - columns%left)/columns%width)
+    c = min(max(c, 1), size(columns%offset) - 1)
+  end function column_at
+
+  !> Elevation of the ground surface at x [m].
+  pure real(dp) function ground_level(mesh, columns, x) result(level)
+    type(mesh_t), intent(in) :: mesh
+    type(columns_t), intent(in) :: columns
     real(dp), intent(in) :: x !! [m]
     real(dp) :: a(2), b(2)
-    integer :: k
+    integer :: k, c
 
     level = -huge(level)
-    do k = 1, size(mesh%boundary_edge, 2)
-      a = mesh%x(:, mesh%boundary_edge(1, k))
-      b = mesh%x(:, mesh%boundary_edge(2, k))
+    c = column_at(columns, x)
+    do k = columns%offset(c), columns%offset(c+1) - 1
+      a = mesh%x(:, mesh%boundary_edge(1, columns%edge(k)))
+      b = mesh%x(:, mesh%boundary_edge(2, columns%edge(k)))
       if (x < min(a(1), b(1)) .or. x > max(a(1), b(1))) cycle
       if (abs(b(1) - a(1)) > 0.0_dp) then
         level = max(level, a(2) + (b(2) - a(2))*(x - a(1))/(b(1) - a(1)))

@@ -22,6 +22,7 @@ module talus_drucker_prager
   end type cone_t
 
   real(dp), parameter :: sqrt3 = 1.7320508075688772_dp
+  real(dp), parameter :: third = 1.0_dp/3.0_dp
 
 contains
 
@@ -82,7 +83,7 @@ contains
     real(dp) :: i1, mean, sx, sy, sz, j2, radius, edge, dlambda, root, root_new, ratio
 
     i1 = stress(1) + stress(2) + stress(3)
-    mean = i1/3.0_dp
+    mean = i1*third
     sx = stress(1) - mean
     sy = stress(2) - mean
     sz = stress(3) - mean
@@ -107,7 +108,7 @@ contains
       ratio = root_new/root
       deqps = (root - root_new)/(shear*sqrt3)
     end if
-    mean = i1/3.0_dp
+    mean = i1*third
     stress(1) = ratio*sx + mean
     stress(2) = ratio*sy + mean
     stress(3) = ratio*sz + mean
@@ -126,7 +127,7 @@ contains
 
     secant_shear_ratio = 1.0_dp
     if (.not. eqps > 0.0_dp) return
-    mean = (stress(1) + stress(2) + stress(3))/3.0_dp
+    mean = (stress(1) + stress(2) + stress(3))*third
     root = sqrt(0.5_dp*((stress(1) - mean)**2 + (stress(2) - mean)**2 + (stress(3) - mean)**2) &
       + stress(4)**2)
     secant_shear_ratio = root/(root + shear*sqrt3*eqps)

@@ -16,6 +16,8 @@ module talus_elastic
     real(dp) :: shear = 0.0_dp          !! G [Pa], set by elastic_prepare
     real(dp) :: bulk = 0.0_dp           !! K [Pa], set by elastic_prepare
     real(dp) :: lame = 0.0_dp           !! K - 2G/3 [Pa], set by elastic_prepare
+    real(dp), private :: over_bulk = 0.0_dp  !! 1/K [1/Pa]
+    real(dp), private :: over_shear = 0.0_dp !! 1/(2 G) [1/Pa]
   end type elastic_t
 
 contains
@@ -35,6 +37,8 @@ contains
       elastic%shear = elastic%youngs_modulus/(2.0_dp*(1.0_dp + elastic%poisson_ratio))
       elastic%bulk = elastic%youngs_modulus/(3.0_dp*(1.0_dp - 2.0_dp*elastic%poisson_ratio))
       elastic%lame = elastic%bulk - elastic%shear*2.0_dp/3.0_dp
+      elastic%over_bulk = 1.0_dp/elastic%bulk
+      elastic%over_shear = 0.5_dp/elastic%shear
     end if
   end subroutine elastic_prepare
 
@@ -58,13 +62,14 @@ contains
     type(elastic_t), intent(in) :: elastic
     real(dp), intent(in) :: a(4) !! stress [Pa]
     real(dp), intent(in) :: b(4) !! stress [Pa]
+    real(dp), parameter :: third = 1.0_dp/3.0_dp
     real(dp) :: mean_a, mean_b, deviatoric
 
-    mean_a = (a(1) + a(2) + a(3))/3.0_dp
-    mean_b = (b(1) + b(2) + b(3))/3.0_dp
+    mean_a = (a(1) + a(2) + a(3))*third
+    mean_b = (b(1) + b(2) + b(3))*third
     deviatoric = (a(1) - mean_a)*(b(1) - mean_b) + (a(2) - mean_a)*(b(2) - mean_b) &
       + (a(3) - mean_a)*(b(3) - mean_b) + 2.0_dp*a(4)*b(4)
-    elastic_bilinear = mean_a*mean_b/elastic%bulk + deviatoric/(2.0_dp*elastic%shear)
+    elastic_bilinear = mean_a*mean_b*elastic%over_bulk + deviatoric*elastic%over_shear
   end function elastic_bilinear
 
   !> Stored elastic energy density 1/2 stress : C^-1 : stress [J/m3].

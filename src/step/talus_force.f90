@@ -31,22 +31,27 @@ contains
     real(dp), contiguous, intent(in) :: load(:,:) !! weight and tractions [N/m], (2,n)
     real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n); (2,0) without
     real(dp), contiguous, intent(inout) :: force(:,:)    !! out-of-balance force [N/m], (2,n)
-    real(dp) :: f1, f2
+    real(dp) :: f11, f12, f21, f22
     integer :: i, k, l
     logical :: stabilised
 
     stabilised = size(stabilising, 2) > 0
     !$omp do schedule(static)
     do i = 1, size(load, 2)
-      f1 = 0.0_dp
-      f2 = 0.0_dp
+      ! Four sums, so that no addition waits for the one before.
+      f11 = 0.0_dp
+      f12 = 0.0_dp
+      f21 = 0.0_dp
+      f22 = 0.0_dp
       do k = scni%node_offset(i), scni%node_offset(i+1) - 1
         l = scni%cell(k)
-        f1 = f1 + r(1, l)*scni%bt(1, k) + r(2, l)*scni%bt(2, k)
-        f2 = f2 + r(3, l)*scni%bt(1, k) + r(4, l)*scni%bt(2, k)
+        f11 = f11 + r(1, l)*scni%bt(1, k)
+        f12 = f12 + r(2, l)*scni%bt(2, k)
+        f21 = f21 + r(3, l)*scni%bt(1, k)
+        f22 = f22 + r(4, l)*scni%bt(2, k)
       end do
-      force(1, i) = load(1, i) - f1
-      force(2, i) = load(2, i) - f2
+      force(1, i) = load(1, i) - (f11 + f12)
+      force(2, i) = load(2, i) - (f21 + f22)
       if (stabilised) force(:, i) = force(:, i) + stabilising(:, i)
     end do
     !$omp end do
@@ -78,11 +83,15 @@ contains
     real(dp), contiguous, intent(inout) :: v(:,:)            !! velocity [m/s], (2,n)
     real(dp), contiguous, intent(inout) :: acceleration(:,:) !! with damping [m/s2], (2,n)
     real(dp), contiguous, intent(inout) :: damped(:)         !! energy damped so far [J/m], (n)
-    real(dp) :: f, next, middle
+    real(dp) :: f, next, middle, over_step, kept, gain
     integer :: i, j
     logical :: damps
 
     damps = local > 0.0_dp .or. viscous > 0.0_dp
+    over_step = 1.0_dp/step
+    gain = 1.0_dp/(1.0_dp + 0.5_dp*step*viscous)
+    kept = (1.0_dp - 0.5_dp*step*viscous)*gain
+    gain = step*gain
     !$omp do schedule(static)
     do i = 1, size(damped)
       do j = 1, 2
@@ -92,9 +101,8 @@ contains
         end if
         f = force(j, i)
         if (local > 0.0_dp .and. abs(v(j, i)) > 0.0_dp) f = f - sign(local*abs(f), v(j, i))
-        next = ((1.0_dp - 0.5_dp*step*viscous)*v(j, i) + step*f*mobility(j, i)) &
-               /(1.0_dp + 0.5_dp*step*viscous)
-        acceleration(j, i) = (next - v(j, i))/step
+        next = kept*v(j, i) + gain*f*mobility(j, i)
+        acceleration(j, i) = (next - v(j, i))*over_step
         if (damps) then
           middle = 0.5_dp*(v(j, i) + next)
           damped(i) = damped(i) + step*middle*(force(j, i) - f + viscous*middle/mobility(j, i))

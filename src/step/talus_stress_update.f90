@@ -7,8 +7,8 @@ module talus_stress_update
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_objective, only: strain_advance, piola_stress
-  use talus_soil_law, only: soil_law_t, soil_update, soil_ok, history_size, stress_bishop, &
-    stress_net, bishop_factor, bishop_subtract, soil_stored_energy, history_damage
+  use talus_soil_law, only: soil_law_t, soil_update, soil_ok, history_size, &
+    history_size_plastic, stress_bishop, stress_net, bishop_factor, bishop_subtract, soil_stored_energy, history_damage
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_storage, only: storage_invert
   implicit none
@@ -119,11 +119,19 @@ contains
     real(dp), intent(out) :: stress(4)
     integer, intent(out) :: ierr
     real(dp) :: strain(4), history(history_size), left, energy
+    integer :: kept
 
     if (allocated(state%strain)) strain = state%strain(:, i)
     if (.not. allocated(state%strain)) strain = 0.0_dp
+    kept = 0
+    if (allocated(state%history)) kept = size(state%history, 1)
     history = 0.0_dp
-    if (allocated(state%history)) history(:size(state%history, 1)) = state%history(:, i)
+    ! Copies of fixed length take no loop.
+    if (kept == history_size) then
+      history = state%history(:history_size, i)
+    else if (kept > 0) then
+      history(:history_size_plastic) = state%history(:history_size_plastic, i)
+    end if
     energy = soil_stored_energy(law, state%stress(:, i), history(history_damage))
     call soil_update(law, state%f(:, i), f_new, suction_old, suction_new, effective, &
                      state%stress(:, i), strain, history, stress, left, ierr)
@@ -134,7 +142,11 @@ contains
       *(f_new(1)*f_new(4) - f_new(2)*f_new(3) &
         - state%f(1, i)*state%f(4, i) + state%f(2, i)*state%f(3, i))
     if (allocated(state%strain)) state%strain(:, i) = strain
-    if (allocated(state%history)) state%history(:, i) = history(:size(state%history, 1))
+    if (kept == history_size) then
+      state%history(:history_size, i) = history
+    else if (kept > 0) then
+      state%history(:history_size_plastic, i) = history(:history_size_plastic)
+    end if
     if (allocated(state%stiffness)) then
       state%stiffness_old(i) = state%stiffness(i)
       state%stiffness(i) = left

@@ -84,6 +84,7 @@ contains
     character(*), intent(in) :: what
 
     write (error_unit, '(2a)') 'bench: ', what
+    flush (error_unit)
   end subroutine say
 
   !> The lines that a script can read, of the model with about 2e4 nodes.

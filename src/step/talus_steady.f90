@@ -24,6 +24,9 @@ module talus_steady
   real(dp), parameter :: step_first = 3600.0_dp, step_last = 1.0e12_dp, step_least = 1.0e-3_dp
   !> Last relative change of pressure in a pseudo-step and at the end.
   real(dp), parameter :: tolerance_way = 1.0e-5_dp, tolerance_end = 1.0e-9_dp
+  !> Imbalance over the largest flux that counts as none where Newton's method circles, and the
+  !> pseudo-step from which on what is stored in it counts as none [s].
+  real(dp), parameter :: round_off = 1.0e-10_dp, step_settled = 1.0e9_dp
   integer, parameter :: most_way = 20, most_end = 60, most_steps = 300
 
 contains
@@ -65,6 +68,9 @@ contains
       call newton_solve(newton, seepage, disc, ground, inlets, &
         merge(1.0_dp/step, 0.0_dp, step < step_last), supply, state, converged, iterations)
       if (converged .and. step >= step_last) return
+      if (step >= step_settled .and. all(held .eqv. seepage%held) .and. &
+          maxval(abs(newton%residual), mask=.not. seepage%held) &
+          <= round_off*maxval(abs(seepage%q))) return
       ! At the kink of saturated soil Newton's method may circle in the last digits.
       if (step >= step_last) tolerance = min(10.0_dp*tolerance, tolerance_way)
       if (converged) then

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Compiler options of every TALUS target, carried by the interface target talus_options.
-# -ffast-math is never used: it would void the checks for NaN.
+# Never value-changing optimisation: it would void the checks for NaN.
 
 add_library(talus_options INTERFACE)
 

@@ -115,7 +115,8 @@ contains
         'A part of the run; stages follow in the order of the deck.')
     call key(t, 'name', 'string', '', '*', '', 'Name, used by &boundary and in the results.')
     call key(t, 'kind', 'string', '', '*', 'geostatic|storm|dynamic|strength_reduction', &
-             'Relax to equilibrium; a storm of hours with soil in equilibrium; real time; or the '// &
+             'Relax to equilibrium; a storm of hours with soil in equilibrium; real time; '// &
+             'or the '// &
              'factor of safety of the soil as it is.')
     call key(t, 'solve', 'string', '', &
              '~soil without &water or if geostatic or strength_reduction, else both', &
@@ -135,14 +136,16 @@ contains
     call key(t, 'steps_max', 'integer', '', '20000', '[1, 2000000000]', &
              'Most steps of one relaxation.', still)
     call key(t, 'damping', 'real', '', '0', '[0, 0.99]', &
-             'Local damping, a fraction of the out-of-balance force; relaxations are damped critically as well.')
+             'Local damping, a fraction of the out-of-balance force; relaxations are damped '// &
+             'critically as well.')
     call key(t, 'mass_scaling', 'logical', '', '~.false. if dynamic, else .true.', '', &
              'Scale the masses so that relaxation takes few steps.')
     call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
              'Time step over the largest stable one.')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
              'Displacement in a storm step, or a trial of strength reduction, that counts as '// &
-             'failure; absent: in a storm none, else 4 times unit weight, mean depth squared over '// &
+             'failure; absent: in a storm none, else 4 times unit weight, mean depth squared '// &
+             'over '// &
              'Young''s modulus.', 'kind=storm|strength_reduction')
     call key(t, 'after_failure', 'string', '', &
              '~dynamic_next if a dynamic stage follows, else stop', 'dynamic_next|stop', &

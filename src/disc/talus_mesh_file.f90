@@ -184,7 +184,8 @@ contains
     end do
     if (reader%n_error > 0) return
     call mesh_edges(mesh, edge_node, edge_corner, corner_edge, found, e)
-    if (status_failed(found)) call report(reader, found%message, 'line '//text_of(reader%element_line(e)))
+    if (status_failed(found)) call report(reader, found%message, &
+                                          'line '//text_of(reader%element_line(e)))
   end subroutine check_elements
 
   !> Corner Jacobian that passes as round-off for an element of this size [m2].

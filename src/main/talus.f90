@@ -36,7 +36,8 @@ program talus
       if (.not. status_failed(status)) &
         call place_results(deck, command%output, command%overwrite, base, status)
       if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, status)
-      if (.not. status_failed(status)) write (*, '(3a)') 'results: ', base, '.h5, _history.csv, _summary.txt'
+      if (.not. status_failed(status)) &
+        write (*, '(3a)') 'results: ', base, '.h5, _history.csv, _summary.txt'
     case ('check')
       call load
       if (.not. status_failed(status)) call check_deck(deck, command%spectrum, status)

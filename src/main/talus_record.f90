@@ -116,8 +116,10 @@ contains
       do i = 1, size(session%probe)
         node = session%probe(i)
         if (session%soil_moves) then
-          call add('probe_'//text_of(i)//'_displacement_x', 'm', state%u(1, node) - state%u_zero(1, node))
-          call add('probe_'//text_of(i)//'_displacement_y', 'm', state%u(2, node) - state%u_zero(2, node))
+          call add('probe_'//text_of(i)//'_displacement_x', 'm', &
+                   state%u(1, node) - state%u_zero(1, node))
+          call add('probe_'//text_of(i)//'_displacement_y', 'm', &
+                   state%u(2, node) - state%u_zero(2, node))
         end if
         if (session%ground%wet) call add('probe_'//text_of(i)//'_pore_pressure', 'Pa', &
                                          state%pressure(node))
@@ -144,7 +146,8 @@ contains
     type(status_t), intent(inout) :: status
 
     call timer_start(session%timer, 'output')
-    call snapshot_begin(session%result, session%state%time, session%deck%stage(session%stage)%name, &
+    call snapshot_begin(session%result, session%state%time, &
+                        session%deck%stage(session%stage)%name, &
                         int(session%state%steps), status)
     call write_fields(session, session%state, status)
     call snapshot_end(session%result, status)
@@ -208,7 +211,8 @@ contains
         'Green-Lagrange strain xx, yy, zz, xy since displacement was last reset', field, status)
       if (.not. allocated(state%history)) return
       scalar = state%history(history_eqps, :)
-      call snapshot_field(result, 'plastic_strain', '1', 'equivalent plastic strain', scalar, status)
+      call snapshot_field(result, 'plastic_strain', '1', 'equivalent plastic strain', scalar, &
+                          status)
       if (all(session%ground%law%damage%driver == 0)) return
       scalar = state%history(history_damage, :)
       call snapshot_field(result, 'damage', '1', 'damage, 0 intact', scalar, status)
@@ -222,9 +226,10 @@ contains
     real(dp), allocatable :: scalar(:), field(:,:)
 
     associate (result => session%result)
-      call snapshot_field(result, 'pore_pressure', 'Pa', 'pore water pressure, compression positive', &
-                          state%pressure, status)
-      call snapshot_field(result, 'saturation', '1', 'degree of saturation', state%saturation, status)
+      call snapshot_field(result, 'pore_pressure', 'Pa', &
+                          'pore water pressure, compression positive', state%pressure, status)
+      call snapshot_field(result, 'saturation', '1', 'degree of saturation', state%saturation, &
+                          status)
       scalar = max(-state%pressure, 0.0_dp)
       call snapshot_field(result, 'suction', 'Pa', 'suction', scalar, status)
       scalar = field_porosity(session%disc, session%ground, state)

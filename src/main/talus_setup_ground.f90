@@ -50,7 +50,8 @@ contains
       ground%law(i)%own_strain = .not. (deck%smoothing%levels == 2 .and. &
                                         deck%smoothing%acts_on == 'damage_only')
       if (deck_damage_index(deck, deck%soil(i)%name) > 0) &
-        call fill_damage(deck%damage(deck_damage_index(deck, deck%soil(i)%name)), ground%law(i)%damage)
+        call fill_damage(deck%damage(deck_damage_index(deck, deck%soil(i)%name)), &
+                         ground%law(i)%damage)
       call soil_law_prepare(ground%law(i), status)
       if (.not. ground%wet) cycle
       water = deck_water_index(deck, deck%soil(i)%name)
@@ -120,7 +121,8 @@ contains
     if (deck_given(soil%dilation_limit)) strength%dilation_limit = soil%dilation_limit
     select case (soil%softening)
     case ('linear', 'exponential')
-      strength%softening = merge(softening_linear, softening_exponential, soil%softening == 'linear')
+      strength%softening = merge(softening_linear, softening_exponential, &
+                                 soil%softening == 'linear')
       strength%softening_strain = soil%softening_strain
       strength%residual_cohesion = soil%residual_cohesion
       strength%residual_friction_angle = soil%residual_friction_angle*deg

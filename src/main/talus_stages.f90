@@ -16,7 +16,8 @@ module talus_stages
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
     relax_balanced, relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
-  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, audit_staggering, &
+  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, &
+    audit_staggering, &
     energies_t
   use talus_soil_law, only: soil_inverted
   use talus_strength_reduction, only: strength_reduction
@@ -98,7 +99,8 @@ contains
                             stage%step_safety, session%motion, session%work)
         session%energies_start = audit_energies(disc, session%ground, session%motion, state)
         session%declared = session%declared//stage%name//': mass scaling '// &
-          trim(merge('on ', 'off', stage%mass_scaling))//', local damping '//text_of(stage%damping)//'; '
+          trim(merge('on ', 'off', stage%mass_scaling))//', local damping '// &
+          text_of(stage%damping)//'; '
       end if
       if (stage%solve /= 'soil') call seepage_shape(session%seepage, disc, session%ground, &
                                                     session%conditions%inlets, state)
@@ -309,14 +311,17 @@ contains
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
       call look_at_step(session, travelled)
-      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
-      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
+                                                       session%state)
+      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
+                     failed)
       call timer_stop(session%timer, 'soil')
       if (failed > 0) then
         call fail(session, failed, status)
         return
       end if
-      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, session%state)
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
+                                                       session%state)
       done = done + session%motion%step
       since_water = since_water + session%motion%step
       session%state%time = session%state%time + session%motion%step

@@ -16,7 +16,7 @@ module talus_ground
     type(soil_law_t), allocatable :: law(:)      !! of each soil
     real(dp), allocatable :: density_solid(:)    !! [kg/m3]
     real(dp), allocatable :: porosity(:)         !! n0 [-]
-    logical :: wet = .false.                     !! water is modelled; else the rest is not allocated
+    logical :: wet = .false.                     !! water is modelled; else no rest
     type(water_curve_t), allocatable :: curve(:) !! of each soil
     real(dp), allocatable :: conductivity(:,:)   !! saturated, along x and y [m/s], (2,soils)
     real(dp), allocatable :: storage(:)          !! S_s [1/Pa]

@@ -18,7 +18,7 @@ module talus_conditions
   type :: inlets_t
     integer, allocatable :: node(:)      !! boundary node of each inlet, ascending, (m)
     integer, allocatable :: kind(:)      !! one of inlet_*, (m)
-    real(dp), allocatable :: value(:)    !! head [m], inward flux [m/s] or greatest pressure [Pa], (m)
+    real(dp), allocatable :: value(:)    !! head [m], inward flux [m/s] or pressure [Pa], (m)
     integer, allocatable :: rain(:)      !! number of its rain, 0 for none, (m)
     integer, allocatable :: offset(:)    !! (m+1)
     integer, allocatable :: half(:)      !! boundary halves, see dual_t

@@ -33,7 +33,7 @@ module talus_state
     real(dp), allocatable :: f_drive(:,:)       !! smoothed, when it drives damage alone, (4,n)
     real(dp), allocatable :: stress(:,:)        !! undamaged, without pore pressure [Pa], (4,n)
     real(dp), allocatable :: strain(:,:)        !! total, where damage needs it, (4,n)
-    real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n), or (2,n) without damage
+    real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n) or (2,n)
     real(dp), allocatable :: stiffness(:)       !! stiffness left over the elastic one, (n)
     real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
@@ -53,7 +53,7 @@ module talus_state
     real(dp), allocatable :: potential(:)       !! Phi [Pa], (n)
     real(dp), allocatable :: capacity(:)        !! dw/dp [1/Pa], (n)
     real(dp), allocatable :: suction(:)         !! that the stress has seen [Pa], (n)
-    real(dp), allocatable :: water_work(:)      !! of stress on pore pressure or swelling [J/m3], (n)
+    real(dp), allocatable :: water_work(:)      !! on pore pressure or swelling [J/m3], (n)
     type(water_balance_t) :: water
   end type state_t
 

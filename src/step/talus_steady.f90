@@ -85,7 +85,8 @@ contains
       end if
     end do
     call status_set(status, status_numeric, 'pore_pressure = ''steady'': no steady seepage '// &
-      'found; last pseudo-step '//text_of(step)//' s after '//text_of(i)//' steps, largest imbalance '// &
+      'found; last pseudo-step '//text_of(step)//' s after '//text_of(i)// &
+      ' steps, largest imbalance '// &
       text_of(maxval(abs(newton%residual), mask=.not. seepage%held))//' m2/s of an offer of '// &
       text_of(sum(supply))//' m2/s; the rain may exceed what the ground can drain')
   end subroutine steady_solve

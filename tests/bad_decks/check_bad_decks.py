@@ -26,9 +26,7 @@ def copy_of(folder: pathlib.Path) -> None:
 
 def messages_of(program: str, deck: str, folder: pathlib.Path) -> tuple[list[str], int]:
     """Messages and exit code of `program check deck`."""
-    run = subprocess.run(
-        [program, "check", deck], cwd=folder, capture_output=True, timeout=60, check=False
-    )
+    run = subprocess.run([program, "check", deck], cwd=folder, capture_output=True, timeout=60, check=False)
     text = (run.stdout + run.stderr).decode("utf-8", "replace")
     return [line for line in text.splitlines() if MESSAGE.match(line)], run.returncode
 

@@ -38,8 +38,9 @@ CASES = [
 def fault_of(program, arguments, code, part):
     """What is wrong with a case, '' for nothing."""
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True,
-                             timeout=60, check=False)
+        run = subprocess.run(
+            [program, *arguments], cwd=folder, capture_output=True, text=True, timeout=60, check=False
+        )
         left = " ".join(os.listdir(folder))
     printed = run.stdout + run.stderr
     if run.returncode != code:

@@ -44,9 +44,20 @@ class Case:
                 (place / other.name).write_bytes(other.read_bytes())
         (place / f"{name}.nml").write_text(text)
         done = subprocess.run(
-            [self.options.program, "run", f"{name}.nml", "--threads", str(threads),
-             "--output", ".", "--overwrite"],
-            cwd=place, capture_output=True, text=True)
+            [
+                self.options.program,
+                "run",
+                f"{name}.nml",
+                "--threads",
+                str(threads),
+                "--output",
+                ".",
+                "--overwrite",
+            ],
+            cwd=place,
+            capture_output=True,
+            text=True,
+        )
         if done.returncode != code:
             sys.exit(f"{name}: exit code {done.returncode}, expected {code}\n{done.stderr}")
         return Result(place, name, done)

@@ -80,8 +80,13 @@ def model(soil: dict = ELASTIC, box: dict = BOX, spacing: float = 0.5) -> list[t
 
 def rainy(soil: dict = ELASTIC, box: dict = BOX) -> list[tuple[str, dict]]:
     """The same with water, sides and rain."""
-    return [*model(soil, box), ("water", WATER), ("initial", TABLE),
-            *[("boundary", side) for side in SIDES], ("boundary", RAIN)]
+    return [
+        *model(soil, box),
+        ("water", WATER),
+        ("initial", TABLE),
+        *[("boundary", side) for side in SIDES],
+        ("boundary", RAIN),
+    ]
 
 
 class OddDecks(unittest.TestCase):
@@ -94,14 +99,22 @@ class OddDecks(unittest.TestCase):
         self.assertLess(abs(float(outcome.summary["water_error"])), 1e-12)
 
     def test_one_element(self):
-        self.stands(run(*model(box={**BOX, "width": 1.0, "height": 1.0}, spacing=1.0),
-                        ("stage", GRAVITY), ("stage", DYNAMIC)))
+        self.stands(
+            run(
+                *model(box={**BOX, "width": 1.0, "height": 1.0}, spacing=1.0),
+                ("stage", GRAVITY),
+                ("stage", DYNAMIC),
+            )
+        )
 
     def test_nothing_can_move(self):
         """Without a free node any step will do; neither stage may hang."""
-        outcome = run(*model(box={**BOX, "width": 1.0, "height": 1.0}, spacing=1.0),
-                      ("boundary", {"where": "all", "displacement": "fixed"}),
-                      ("stage", GRAVITY), ("stage", DYNAMIC))
+        outcome = run(
+            *model(box={**BOX, "width": 1.0, "height": 1.0}, spacing=1.0),
+            ("boundary", {"where": "all", "displacement": "fixed"}),
+            ("stage", GRAVITY),
+            ("stage", DYNAMIC),
+        )
         self.stands(outcome)
         self.assertEqual(float(outcome.summary["maximum_displacement"]), 0.0)
 
@@ -123,42 +136,55 @@ class OddDecks(unittest.TestCase):
 
     def test_saturating_elastic_soil_stands(self):
         """Soil that fills with water stiffens; the step must follow, or elastic soil "fails"."""
-        outcome = run(*rainy({**ELASTIC, "stress": "bishop"}, {**BOX, "width": 1.0, "height": 4.0}),
-                      ("stage", GRAVITY), ("stage", {**STORM, "duration": 36000.0}))
+        outcome = run(
+            *rainy({**ELASTIC, "stress": "bishop"}, {**BOX, "width": 1.0, "height": 4.0}),
+            ("stage", GRAVITY),
+            ("stage", {**STORM, "duration": 36000.0}),
+        )
         self.stands(outcome)
 
     def test_table_of_cohesion_alone(self):
-        soil = {**PLASTIC, "softening": "table", "softening_table_strain": [0.0, 0.1, 0.2],
-                "softening_table_cohesion": [5e3, 2e3, 1e3]}
+        soil = {
+            **PLASTIC,
+            "softening": "table",
+            "softening_table_strain": [0.0, 0.1, 0.2],
+            "softening_table_cohesion": [5e3, 2e3, 1e3],
+        }
         self.stands(run(*model(soil), ("stage", GRAVITY), ("stage", DYNAMIC)))
 
     def test_later_storms_are_skipped_after_a_failure(self):
-        soil = {**PLASTIC, "cohesion": 2e3, "friction_angle": 5.0, "suction_strength": "phi_b",
-                "phi_b": 25.0}
+        soil = {**PLASTIC, "cohesion": 2e3, "friction_angle": 5.0, "suction_strength": "phi_b", "phi_b": 25.0}
         groups = model(soil, {**BOX, "width": 4.0, "height": 4.0})
-        outcome = run(*groups, ("water", WATER),
-                      ("initial", {"pore_pressure": "uniform", "suction": 3e4}),
-                      ("boundary", SIDES[0]), ("boundary", {**RAIN, "where": "all", "rain": 40.0}),
-                      ("stage", GRAVITY),
-                      ("stage", {**STORM, "duration": 3.6e5, "storm_step": 3600.0,
-                                 "failure_displacement": 0.05}),
-                      ("stage", {**STORM, "name": "later"}),
-                      ("stage", {**DYNAMIC, "only_after_failure": True}))
+        outcome = run(
+            *groups,
+            ("water", WATER),
+            ("initial", {"pore_pressure": "uniform", "suction": 3e4}),
+            ("boundary", SIDES[0]),
+            ("boundary", {**RAIN, "where": "all", "rain": 40.0}),
+            ("stage", GRAVITY),
+            ("stage", {**STORM, "duration": 3.6e5, "storm_step": 3600.0, "failure_displacement": 0.05}),
+            ("stage", {**STORM, "name": "later"}),
+            ("stage", {**DYNAMIC, "only_after_failure": True}),
+        )
         self.assertEqual(outcome.code, 0, outcome.message)
         self.assertEqual(outcome.summary["failed"], ".true.")
         self.assertEqual(outcome.lines_of("later"), [])
         self.assertGreater(len(outcome.lines_of("slide")), 1)
 
     def test_slide_is_skipped_when_the_storm_stands(self):
-        outcome = run(*rainy(), ("stage", GRAVITY), ("stage", STORM),
-                      ("stage", {**DYNAMIC, "only_after_failure": True}))
+        outcome = run(
+            *rainy(), ("stage", GRAVITY), ("stage", STORM), ("stage", {**DYNAMIC, "only_after_failure": True})
+        )
         self.stands(outcome)
         self.assertEqual(outcome.lines_of("slide"), [])
 
     def test_history_interval_of_a_storm(self):
-        outcome = run(*rainy(), ("stage", GRAVITY),
-                      ("stage", {**STORM, "duration": 18000.0, "storm_step": 600.0}),
-                      ("output", {"history_interval": 6000.0}))
+        outcome = run(
+            *rainy(),
+            ("stage", GRAVITY),
+            ("stage", {**STORM, "duration": 18000.0, "storm_step": 600.0}),
+            ("output", {"history_interval": 6000.0}),
+        )
         self.stands(outcome)
         times = [float(row["time"]) for row in outcome.lines_of("storm")]
         self.assertEqual(times, [0.0, 6000.0, 12000.0, 18000.0])
@@ -169,8 +195,11 @@ class OddDecks(unittest.TestCase):
         self.assertRegex(outcome.message, r"out-of-balance force 0\.[1-9]")
 
     def test_a_missing_boundary_is_told_before_anything_is_written(self):
-        outcome = run(*model(), ("boundary", {"where": "box", "from_x": 0.1, "to_x": 0.2,
-                                              "pressure": 10.0}), ("stage", GRAVITY))
+        outcome = run(
+            *model(),
+            ("boundary", {"where": "box", "from_x": 0.1, "to_x": 0.2, "pressure": 10.0}),
+            ("stage", GRAVITY),
+        )
         self.assertEqual(outcome.code, 2)
         self.assertEqual(outcome.files, [])
 

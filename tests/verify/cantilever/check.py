@@ -32,18 +32,24 @@ def tractions(spacing):
         normal = -LOAD * LENGTH / INERTIA * (low + high) / 2
         for x, along in ((0.0, normal), (LENGTH, 0.0)):
             across = shear if x == 0.0 else -shear
-            groups.append(f"&boundary\n  where = 'box'\n  from_x = {x - 0.01}\n  to_x = {x + 0.01}\n"
-                          f"  from_y = {low}\n  to_y = {high}\n"
-                          f"  traction_x = {along}\n  traction_y = {across}\n/\n")
+            groups.append(
+                f"&boundary\n  where = 'box'\n  from_x = {x - 0.01}\n  to_x = {x + 0.01}\n"
+                f"  from_y = {low}\n  to_y = {high}\n"
+                f"  traction_x = {along}\n  traction_y = {across}\n/\n"
+            )
     return "".join(groups)
 
 
 def exact(x, y):
     scale = LOAD / (6 * E1 * INERTIA)
-    return np.stack([
-        scale * y * ((6 * LENGTH - 3 * x) * x + (2 + NU1) * (y**2 - DEPTH**2 / 4)),
-        -scale * (3 * NU1 * y**2 * (LENGTH - x) + (4 + 5 * NU1) * DEPTH**2 * x / 4
-                  + (3 * LENGTH - x) * x**2)], axis=1)
+    return np.stack(
+        [
+            scale * y * ((6 * LENGTH - 3 * x) * x + (2 + NU1) * (y**2 - DEPTH**2 / 4)),
+            -scale
+            * (3 * NU1 * y**2 * (LENGTH - x) + (4 + 5 * NU1) * DEPTH**2 * x / 4 + (3 * LENGTH - x) * x**2),
+        ],
+        axis=1,
+    )
 
 
 case = Case(__file__.rsplit("/", 1)[0])
@@ -53,8 +59,9 @@ def stiff(nodes, area, field):
     """A displacement field less its mean and its mean rotation about the middle of the beam."""
     arm = nodes - [LENGTH / 2, 0.0]
     field = field - np.sum(field * area[:, None], axis=0) / np.sum(area)
-    turn = np.sum(area * (arm[:, 0] * field[:, 1] - arm[:, 1] * field[:, 0])) \
-        / np.sum(area * np.sum(arm**2, axis=1))
+    turn = np.sum(area * (arm[:, 0] * field[:, 1] - arm[:, 1] * field[:, 0])) / np.sum(
+        area * np.sum(arm**2, axis=1)
+    )
     return field - turn * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
 
 
@@ -66,25 +73,42 @@ def errors(level):
     found = []
     for spacing in SPACINGS:
         levels = "levels = 1" if level == 1 else f"levels = 2\n  length = {4 * spacing}"
-        result = case.run("beam.nml", [
-            ("spacing = 0.25", f"spacing = {spacing}"), ("levels = 1", levels),
-            ("! check.py puts the tractions of both ends here.\n", tractions(spacing))])
+        result = case.run(
+            "beam.nml",
+            [
+                ("spacing = 0.25", f"spacing = {spacing}"),
+                ("levels = 1", levels),
+                ("! check.py puts the tractions of both ends here.\n", tractions(spacing)),
+            ],
+        )
         answer = exact(*result.nodes.T)
         wrong = result.field("displacement") - answer
         raw = size(result.area, wrong) / size(result.area, answer)
-        found.append(size(result.area, stiff(result.nodes, result.area, wrong))
-                     / size(result.area, stiff(result.nodes, result.area, answer)))
-        print(f"     {level} level(s), h = {spacing}: relative L2 error {found[-1]:.3e}, with its rigid "
-              f"motion {raw:.3e}, {result.summary['steps']} steps")
+        found.append(
+            size(result.area, stiff(result.nodes, result.area, wrong))
+            / size(result.area, stiff(result.nodes, result.area, answer))
+        )
+        print(
+            f"     {level} level(s), h = {spacing}: relative L2 error {found[-1]:.3e}, with its rigid "
+            f"motion {raw:.3e}, {result.summary['steps']} steps"
+        )
     return np.array(found)
 
 
 one = errors(1)
 orders = np.log2(one[:-1] / one[1:])
-case.check("one level, 1.9 less the order", 1.9 - orders.min(), 0.0,
-           f"issue 2; orders {orders[0]:.2f}, {orders[1]:.2f}")
+case.check(
+    "one level, 1.9 less the order",
+    1.9 - orders.min(),
+    0.0,
+    f"issue 2; orders {orders[0]:.2f}, {orders[1]:.2f}",
+)
 two = errors(2)
 print(f"     two levels, ell = 4 h: orders {np.log2(two[:-1] / two[1:])}")
-case.check("two levels, ell = 4 h, error falls with the spacing", (two[1:] / two[:-1]).max(), 0.6,
-           "at least first order")
+case.check(
+    "two levels, ell = 4 h, error falls with the spacing",
+    (two[1:] / two[:-1]).max(),
+    0.6,
+    "at least first order",
+)
 sys.exit(case.verdict())

@@ -27,18 +27,23 @@ for rows in (51, 101, 201):
         right = exact[point, k]
         found.append(np.linalg.norm(psi - right) / np.linalg.norm(right))
     error[rows], mean[rows] = found[-1], np.mean(found)
-    print(f"     {rows} rows, relative L2 of psi: " + ", ".join(f"{e:.3%}" for e in found)
-          + f"; {result.summary['seepage_steps']} sub-steps, "
-          f"{result.summary['wall_seconds_seepage']} s in seepage")
-    case.check(f"water error, {rows} rows", abs(float(result.summary["water_error"])), 1e-12,
-               "round-off")
+    print(
+        f"     {rows} rows, relative L2 of psi: "
+        + ", ".join(f"{e:.3%}" for e in found)
+        + f"; {result.summary['seepage_steps']} sub-steps, "
+        f"{result.summary['wall_seconds_seepage']} s in seepage"
+    )
+    case.check(f"water error, {rows} rows", abs(float(result.summary["water_error"])), 1e-12, "round-off")
     column = result.nodes[:, 0] < 1e-9
     saturation = result.field("saturation")[column][np.argsort(result.nodes[column, 1])]
-    case.check("fall of saturation upward", np.max(-np.diff(saturation)), 1e-9,
-               "the front is monotone")
+    case.check("fall of saturation upward", np.max(-np.diff(saturation)), 1e-9, "the front is monotone")
 case.check("error at 24 h, 51 rows", error[51], 0.10, "OpenGeoSys 6.5.9 has 0.165 at 41")
 case.check("error at 24 h, 101 rows", error[101], 0.03, "OpenGeoSys 6.5.9 has 0.057")
 case.check("error at 24 h, 201 rows", error[201], 0.015, "OpenGeoSys 6.5.9 has 0.047")
-case.check("mean error at 201 over that at 51 rows", mean[201] / mean[51], 0.25,
-           "first order at least, although the front is a few nodes wide")
+case.check(
+    "mean error at 201 over that at 51 rows",
+    mean[201] / mean[51],
+    0.25,
+    "first order at least, although the front is a few nodes wide",
+)
 sys.exit(case.verdict())

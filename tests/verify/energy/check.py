@@ -21,7 +21,9 @@ for name, levels in {"two levels": TWO, "one level": "levels = 1"}.items():
     case.check(f"{name}: energy", np.abs(history["energy_error"]).max(), 1e-3, "issue 2")
     case.check(f"{name}: the summary's", float(result.summary["energy_error"]), 1e-3, "issue 2")
     case.check_true(f"{name}: falls by more than a metre", history["maximum_displacement"][-1] > 1.0)
-    case.check_true(f"{name}: plastic work and damage take part",
-                    history["energy_plastic"][-1] > 0.05 * history["energy_external"][-1]
-                    and history["energy_damage"][-1] > 0)
+    case.check_true(
+        f"{name}: plastic work and damage take part",
+        history["energy_plastic"][-1] > 0.05 * history["energy_external"][-1]
+        and history["energy_damage"][-1] > 0,
+    )
 sys.exit(case.verdict())

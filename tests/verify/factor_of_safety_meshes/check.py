@@ -35,18 +35,25 @@ for level, smoothing in LEVELS.items():
     print(f"     {base.summary['factor_criterion']}")
     moved = float(base.summary["factor_failure_displacement"])
     for name, old, new in (
-            ("displacement by 3", STEPS, f"{STEPS}\n  failure_displacement = {moved / 3}"),
-            ("displacement times 3", STEPS, f"{STEPS}\n  failure_displacement = {moved * 3}"),
-            ("steps_max by 3", STEPS, "steps_max = 3333"),
-            ("steps_max times 3", STEPS, "steps_max = 30000"),
-            ("tolerance by 3", TOLERANCE, "tolerance = 3.333e-6"),
-            ("tolerance times 3", TOLERANCE, "tolerance = 3.0e-5")):
+        ("displacement by 3", STEPS, f"{STEPS}\n  failure_displacement = {moved / 3}"),
+        ("displacement times 3", STEPS, f"{STEPS}\n  failure_displacement = {moved * 3}"),
+        ("steps_max by 3", STEPS, "steps_max = 3333"),
+        ("steps_max times 3", STEPS, "steps_max = 30000"),
+        ("tolerance by 3", TOLERANCE, "tolerance = 3.333e-6"),
+        ("tolerance times 3", TOLERANCE, "tolerance = 3.0e-5"),
+    ):
         other = case.run(DECK, [*smoothing, (old, new), NEAR], name=f"{level}_{name}".replace(" ", "_"))
-        case.check(f"level {level}, {name}: {factor_of(other):.4f}, change",
-                   abs(factor_of(other) - factor_of(base)), 0.02, "the answer does not hang on the threshold")
+        case.check(
+            f"level {level}, {name}: {factor_of(other):.4f}, change",
+            abs(factor_of(other) - factor_of(base)),
+            0.02,
+            "the answer does not hang on the threshold",
+        )
 
-FINE = [(STEPS, "steps_max = 100000\n  factor_tolerance = 0.003"),
-        ("factor_first = 1.0", "factor_first = 1.3")]
+FINE = [
+    (STEPS, "steps_max = 100000\n  factor_tolerance = 0.003"),
+    ("factor_first = 1.0", "factor_first = 1.3"),
+]
 for level, spacings in ((1, (0.9, 0.45, 0.225)), (2, (0.45, 0.32, 0.225))):
     factors = []
     for h in spacings:

@@ -22,8 +22,9 @@ HEIGHT, WEIGHT = 2.0, 2000.0 * 9.81
 def average(nodes, area, ell):
     """Weights of the second level: cubic B-spline, symmetric, rows that sum to one."""
     distance = np.linalg.norm(nodes[:, None] - nodes[None], axis=2) / ell
-    spline = np.where(distance < 0.5, 2 / 3 - 4 * distance**2 + 4 * distance**3,
-                      4 / 3 * np.clip(1 - distance, 0, None)**3)
+    spline = np.where(
+        distance < 0.5, 2 / 3 - 4 * distance**2 + 4 * distance**3, 4 / 3 * np.clip(1 - distance, 0, None) ** 3
+    )
     scale = np.ones(len(area))
     for _ in range(200):
         scale = np.sqrt(scale / (spline @ (scale * area)))
@@ -44,9 +45,17 @@ for ell in (None, 0.3, 0.4):
     carried = average(result.nodes, result.area, ell) @ stress
     inside = (y > ell + 1e-9) & (y < HEIGHT - ell - 1e-9)
     what = f"two levels, ell = {ell} m"
-    case.check(f"{what}, averaged stress", np.abs(carried - exact).max() / (WEIGHT * HEIGHT), 0.01,
-               "but for the share of the stabilisation")
+    case.check(
+        f"{what}, averaged stress",
+        np.abs(carried - exact).max() / (WEIGHT * HEIGHT),
+        0.01,
+        "but for the share of the stabilisation",
+    )
     case.check(f"{what}, nodal stress inside", error[inside].max(), 0.005, "benchmarks.md M4")
-    case.check(f"{what}, nodal stress within ell of an end", error.max(), 0.35 * ell / HEIGHT,
-               "0.35 rho g ell, see above")
+    case.check(
+        f"{what}, nodal stress within ell of an end",
+        error.max(),
+        0.35 * ell / HEIGHT,
+        "0.35 rho g ell, see above",
+    )
 sys.exit(case.verdict())

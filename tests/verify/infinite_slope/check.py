@@ -52,8 +52,10 @@ def mesh_text(nodes):
 
 
 def box(low, high, effect):
-    return (f"&boundary\n  where = 'box'\n  from_x = {low[0] - TIP:.8f}\n  to_x = {high[0] + TIP:.8f}\n"
-            f"  from_y = {low[1] - TIP:.8f}\n  to_y = {high[1] + TIP:.8f}\n  {effect}\n/\n")
+    return (
+        f"&boundary\n  where = 'box'\n  from_x = {low[0] - TIP:.8f}\n  to_x = {high[0] + TIP:.8f}\n"
+        f"  from_y = {low[1] - TIP:.8f}\n  to_y = {high[1] + TIP:.8f}\n  {effect}\n/\n"
+    )
 
 
 def boundaries(nodes, weight, factor):
@@ -66,8 +68,11 @@ def boundaries(nodes, weight, factor):
             depth = nodes[-1, column, 1] - 0.5 * (low[1] + high[1])
             across, shear = weight * depth * math.cos(SLOPE) * np.array([normal[1], along[1]])
             lengthwise = across + 2.0 * shear * TAN_PHI / factor
-            stress = (-across * np.outer(normal, normal) - lengthwise * np.outer(along, along)
-                      - shear * (np.outer(normal, along) + np.outer(along, normal)))
+            stress = (
+                -across * np.outer(normal, normal)
+                - lengthwise * np.outer(along, along)
+                - shear * (np.outer(normal, along) + np.outer(along, normal))
+            )
             x, y = outward * stress[:, 0]
             text += box(low, high, f"traction_x = {x:.6f}\n  traction_y = {y:.6f}")
     return text
@@ -80,11 +85,18 @@ def run(rows, suction, weight):
     nodes = mesh(rows)
     (place / "slab.mesh").write_text(mesh_text(nodes))
     exact = closed_form(weight, suction)
-    return case.run("slab.nml", [
-        ("suction = 20.0e3", f"suction = {suction}"),
-        ("&stage\n  name = 'gravity'", boundaries(nodes, weight, exact) + "&stage\n  name = 'gravity'"),
-        ("kind = 'strength_reduction'",
-         "kind = 'strength_reduction'\n  factor_tolerance = 0.002\n  factor_first = 1.1")], name=name)
+    return case.run(
+        "slab.nml",
+        [
+            ("suction = 20.0e3", f"suction = {suction}"),
+            ("&stage\n  name = 'gravity'", boundaries(nodes, weight, exact) + "&stage\n  name = 'gravity'"),
+            (
+                "kind = 'strength_reduction'",
+                "kind = 'strength_reduction'\n  factor_tolerance = 0.002\n  factor_first = 1.1",
+            ),
+        ],
+        name=name,
+    )
 
 
 def unit_weight(suction):
@@ -103,9 +115,15 @@ for suction in (20.0e3, 40.0e3):
         case.check("saturation is that of the unit weight", dry, 1e-3, "table of the retention curve")
         factor = float(result.summary["factor_of_safety"])
         errors.append(factor / exact - 1)
-        print(f"     suction {suction / 1e3:.0f} kPa, {rows} rows: factor {factor:.4f}, "
-              f"closed form {exact:.4f}, error {errors[-1]:+.4f}; {result.summary['factor_trials']} trials")
+        print(
+            f"     suction {suction / 1e3:.0f} kPa, {rows} rows: factor {factor:.4f}, "
+            f"closed form {exact:.4f}, error {errors[-1]:+.4f}; {result.summary['factor_trials']} trials"
+        )
     case.check(f"suction {suction / 1e3:.0f} kPa: error of the factor", abs(errors[-1]), 0.01, "issue, S3")
-    case.check(f"suction {suction / 1e3:.0f} kPa: error over that of half the rows", errors[-1] / errors[-2],
-               0.65, "first order, and the width of the bracket")
+    case.check(
+        f"suction {suction / 1e3:.0f} kPa: error over that of half the rows",
+        errors[-1] / errors[-2],
+        0.65,
+        "first order, and the width of the bracket",
+    )
 sys.exit(case.verdict())

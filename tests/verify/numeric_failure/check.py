@@ -21,21 +21,28 @@ case = Case(__file__.rsplit("/", 1)[0])
 result = case.run("crush.nml", code=3)
 message = result.done.stderr
 print("     " + message.strip())
-case.check_true("message names stage, time, step, node, place and quantity", re.search(
-    r"stage crush, time [0-9.e+-]+ s, step \d+, node \d+ at \([0-9.e+-]+, [0-9.e+-]+\) m: "
-    r"the (soil is turned inside out|stress is not a finite number)", message) is not None)
+case.check_true(
+    "message names stage, time, step, node, place and quantity",
+    re.search(
+        r"stage crush, time [0-9.e+-]+ s, step \d+, node \d+ at \([0-9.e+-]+, [0-9.e+-]+\) m: "
+        r"the (soil is turned inside out|stress is not a finite number)",
+        message,
+    )
+    is not None,
+)
 case.check_true("no backtrace", "Backtrace" not in message and message.count("\n") == 1)
 with h5py.File(result.path) as file:
     good = file["snapshots/last_good"]
     case.check_true("last_good is finite", all(np.isfinite(good[name][:]).all() for name in good))
     case.check_true("last_good tells its time", 0 <= good.attrs["time"] < 1.0)
-case.check_true("the summary tells the failure", result.summary["exit_code"] == "3"
-                and "inside out" in result.summary["failure"] + message)
+case.check_true(
+    "the summary tells the failure",
+    result.summary["exit_code"] == "3" and "inside out" in result.summary["failure"] + message,
+)
 
 
 def talus(*words):
-    return subprocess.run([case.options.program, *words], cwd=result.place, capture_output=True,
-                          text=True)
+    return subprocess.run([case.options.program, *words], cwd=result.place, capture_output=True, text=True)
 
 
 def digest():
@@ -44,16 +51,25 @@ def digest():
 
 before = digest()
 done = talus("run", "crush.nml", "--output", ".")
-case.check_true("results are kept without --overwrite: exit code 2", done.returncode == 2
-                and "--overwrite" in done.stderr)
+case.check_true(
+    "results are kept without --overwrite: exit code 2", done.returncode == 2 and "--overwrite" in done.stderr
+)
 case.check_true("every file is unchanged", digest() == before)
-for words in (["run", "crush.nml", "--no-such-option"], ["walk", "crush.nml"], ["run"],
-              ["run", "crush.nml", "--threads", "none"], ["run", "crush.nml", "other.nml"]):
+for words in (
+    ["run", "crush.nml", "--no-such-option"],
+    ["walk", "crush.nml"],
+    ["run"],
+    ["run", "crush.nml", "--threads", "none"],
+    ["run", "crush.nml", "other.nml"],
+):
     done = talus(*words)
-    case.check_true(f"refused with exit code 2: {' '.join(words)}",
-                    done.returncode == 2 and len(done.stderr) > 0)
+    case.check_true(
+        f"refused with exit code 2: {' '.join(words)}", done.returncode == 2 and len(done.stderr) > 0
+    )
 done = talus("run", "no_such_deck.nml")
-case.check_true(f"a deck that is not there: exit code {done.returncode}", done.returncode in (1, 2)
-                and "no_such_deck.nml" in done.stderr)
+case.check_true(
+    f"a deck that is not there: exit code {done.returncode}",
+    done.returncode in (1, 2) and "no_such_deck.nml" in done.stderr,
+)
 case.check_true("nothing else was written", digest() == before)
 sys.exit(case.verdict())

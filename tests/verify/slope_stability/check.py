@@ -21,17 +21,24 @@ TWO = "levels = 2\n  length = 1.4"
 
 def run(ratio, factor, levels, stands):
     friction = math.degrees(math.atan(math.tan(math.radians(20.0)) / factor))
-    result = case.run("slope.nml", [
-        ("cohesion = 10.0e3", f"cohesion = {ratio * 200.0e3 / factor}"),
-        ("friction_angle = 20.0", f"friction_angle = {friction}"), ("levels = 1", levels)],
-        code=0 if stands else 3)
+    result = case.run(
+        "slope.nml",
+        [
+            ("cohesion = 10.0e3", f"cohesion = {ratio * 200.0e3 / factor}"),
+            ("friction_angle = 20.0", f"friction_angle = {friction}"),
+            ("levels = 1", levels),
+        ],
+        code=0 if stands else 3,
+    )
     what = f"c/(gamma H) = {ratio}, strength over {factor}, {levels.split(chr(10))[0]}"
     if stands:
         case.check_true(what + ": stands, also in a storm", result.summary["failed"] == ".false.")
     else:
-        case.check_true(what + ": falls, and says so",
-                        "no equilibrium within steps_max" in result.done.stderr
-                        and "does not stand" in result.done.stderr)
+        case.check_true(
+            what + ": falls, and says so",
+            "no equilibrium within steps_max" in result.done.stderr
+            and "does not stand" in result.done.stderr,
+        )
 
 
 for levels in ("levels = 1", TWO):

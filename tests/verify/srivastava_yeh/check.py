@@ -24,26 +24,33 @@ def errors(result):
         psi = result.field("pore_pressure", time=3600.0 * hours) / 9810.0
         right = np.interp(result.nodes[:, 1] * 100, exact[:, 0], exact[:, k]) / 100
         found[hours] = np.linalg.norm(psi - right) / np.linalg.norm(right)
-    print("     relative L2 of psi: " + ", ".join(f"{h} h {e:.3%}" for h, e in found.items())
-          + f"; {result.summary['seepage_steps']} sub-steps, "
-          f"{result.summary['wall_seconds_seepage']} s in seepage")
+    print(
+        "     relative L2 of psi: "
+        + ", ".join(f"{h} h {e:.3%}" for h, e in found.items())
+        + f"; {result.summary['seepage_steps']} sub-steps, "
+        f"{result.summary['wall_seconds_seepage']} s in seepage"
+    )
     return found
 
 
-coarse = errors(case.run("srivastava_yeh.nml", [("spacing = 0.01", "spacing = 0.02")],
-                         name="rows_51"))
+coarse = errors(case.run("srivastava_yeh.nml", [("spacing = 0.01", "spacing = 0.02")], name="rows_51"))
 result = case.run("srivastava_yeh.nml")
 fine = errors(result)
 case.check("error at 10 h", fine[10], 0.005, "101 rows")
 case.check("error of the steady start", fine[0], 0.005, "the same fluxes without storage")
-case.check("error at 0 h over that of twice the spacing", fine[0] / coarse[0], 0.3,
-           "second order, 0.25, with a margin for higher terms")
+case.check(
+    "error at 0 h over that of twice the spacing",
+    fine[0] / coarse[0],
+    0.3,
+    "second order, 0.25, with a margin for higher terms",
+)
 case.check("water error", abs(float(result.summary["water_error"])), 1e-12, "round-off")
-result = case.run("srivastava_yeh.nml", [
-    ("width = 0.02", "width = 0.2"), ("spacing = 0.01", "spacing = 0.02 perturbation = 0.3")],
-    name="perturbed")
+result = case.run(
+    "srivastava_yeh.nml",
+    [("width = 0.02", "width = 0.2"), ("spacing = 0.01", "spacing = 0.02 perturbation = 0.3")],
+    name="perturbed",
+)
 uneven = errors(result)
 case.check("error at 10 h on perturbed nodes", uneven[10], 0.005, "the same limit as on a grid")
-case.check("water error on perturbed nodes", abs(float(result.summary["water_error"])), 1e-12,
-           "round-off")
+case.check("water error on perturbed nodes", abs(float(result.summary["water_error"])), 1e-12, "round-off")
 sys.exit(case.verdict())

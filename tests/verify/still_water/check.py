@@ -15,6 +15,10 @@ for start in ("hydrostatic", "steady"):
     still = 9810.0 * (1.0 - result.nodes[:, 1])
     moved = np.max(np.abs(result.field("pore_pressure") - still))
     print(f"     {start}: {result.summary['seepage_steps']} sub-steps in a day")
-    case.check(f"largest change of pressure in a day, {start} start [Pa]", moved, 1e-5,
-               "1 nm of head: round-off of the fluxes over a step of hours")
+    case.check(
+        f"largest change of pressure in a day, {start} start [Pa]",
+        moved,
+        1e-5,
+        "1 nm of head: round-off of the fluxes over a step of hours",
+    )
 sys.exit(case.verdict())

@@ -34,8 +34,12 @@ with h5py.File(result.path) as file:
         excess = group["pore_pressure"][:] - still
         settlement = -group["displacement"][:, 1][top].mean()
         if stage == "load" and group.attrs["time"] > 0:
-            case.check("undrained pressure", np.abs(excess / undrained - 1).max(), 5e-3,
-                       "the weight strains the column by 0.1 to 0.2 % first")
+            case.check(
+                "undrained pressure",
+                np.abs(excess / undrained - 1).max(),
+                5e-3,
+                "the weight strains the column by 0.1 to 0.2 % first",
+            )
         if stage != "drain":
             continue
         reached = c_v * group.attrs["time"]
@@ -45,12 +49,11 @@ with h5py.File(result.path) as file:
             seen.append(time)
             mean = 1 - np.sum(excess * result.area) / np.sum(result.area) / undrained
             settled = (settlement * MODULUS / LOAD - 0.5) / 0.5
-            case.check(f"T_v = {time}: degree by pressure {mean:.4f}", abs(mean - degree), 0.02,
-                       "issue 2")
-            case.check(f"T_v = {time}: degree by settlement {settled:.4f}", abs(settled - degree),
-                       0.02, "issue 2")
+            case.check(f"T_v = {time}: degree by pressure {mean:.4f}", abs(mean - degree), 0.02, "issue 2")
+            case.check(
+                f"T_v = {time}: degree by settlement {settled:.4f}", abs(settled - degree), 0.02, "issue 2"
+            )
 case.check_true("all times of the table were reached", sorted(seen) == sorted(EXACT))
-case.check("staggering number", float(result.summary["staggering_number"]), 10.0,
-           "src/THEORY.md section 5.6")
+case.check("staggering number", float(result.summary["staggering_number"]), 10.0, "src/THEORY.md section 5.6")
 case.check("water balance", float(result.summary["water_error"]), 1e-12, "round-off")
 sys.exit(case.verdict())

@@ -25,9 +25,11 @@ for count in (1, 2, 4):
 def datasets(path):
     found = {}
     with h5py.File(path) as file:
+
         def take(name, item):
             if isinstance(item, h5py.Dataset):
                 found[name] = item[()]
+
         file.visititems(take)
     return found
 
@@ -38,10 +40,14 @@ case.check_true("soil yields and water moves", first[changed[-1]].max() > 1e-3)
 for threads in (2, 4):
     other = datasets(runs[threads].place / "wet.h5")
     same = first.keys() == other.keys()
-    different = [name for name in first
-                 if same and np.asarray(first[name]).tobytes() != np.asarray(other[name]).tobytes()]
-    case.check_true(f"{threads} threads: {len(first)} datasets equal, different: {different}",
-                    same and not different)
+    different = [
+        name
+        for name in first
+        if same and np.asarray(first[name]).tobytes() != np.asarray(other[name]).tobytes()
+    ]
+    case.check_true(
+        f"{threads} threads: {len(first)} datasets equal, different: {different}", same and not different
+    )
     lines = [(runs[n].place / "wet_history.csv").read_bytes() for n in (1, threads)]
     case.check_true(f"{threads} threads: history equal", lines[0] == lines[1])
 sys.exit(case.verdict())

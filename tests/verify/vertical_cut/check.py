@@ -17,22 +17,35 @@ case = Case(pathlib.Path(__file__).resolve().parents[3] / "input" / "vertical_cu
 weak = case.run("case.nml", name="weak")
 history = weak.history()
 shored = history["stage"] == "shored"
-case.check("shored: it stands [m]", history["maximum_displacement"][shored][-1], 0.05,
-           "elastic settlement only")
+case.check(
+    "shored: it stands [m]", history["maximum_displacement"][shored][-1], 0.05, "elastic settlement only"
+)
 case.check("opened: energy error", float(weak.summary["energy_error"]), 1e-3, "issue 2")
-case.check_true(f"opened: it falls, by {history['maximum_displacement'][-1]:.2f} m in "
-                f"{history['time'][-1]:.2f} s", history["maximum_displacement"][-1] > 0.5)
+case.check_true(
+    f"opened: it falls, by {history['maximum_displacement'][-1]:.2f} m in {history['time'][-1]:.2f} s",
+    history["maximum_displacement"][-1] > 0.5,
+)
 case.check_true("opened: and still moves", history["maximum_velocity"][-1] > 1.0)
 plastic = weak.field("plastic_strain")
 band = plastic > 0.25 * plastic.max()
 reach = weak.nodes[band]
-case.check_true("a shear band runs from the toe into the ground behind the face",
-                np.min(np.linalg.norm(reach - [6.0, 2.0], axis=1)) < 0.5
-                and reach[:, 1].max() > 3.0)
-strong = case.run("case.nml", [("cohesion = 15.0e3", "cohesion = 25.0e3"),
-                             ("duration = 0.6", "duration = 1.0")], name="strong").history()
-case.check("25 kPa, opened: it stays [m]", strong["maximum_displacement"].max(), 0.1,
-           "elastic unloading swings by twice its static 3 cm")
-case.check_true("25 kPa, opened: plastic work has ended",
-                np.ptp(strong["energy_plastic"][-20:]) < 0.02 * strong["energy_plastic"][-1])
+case.check_true(
+    "a shear band runs from the toe into the ground behind the face",
+    np.min(np.linalg.norm(reach - [6.0, 2.0], axis=1)) < 0.5 and reach[:, 1].max() > 3.0,
+)
+strong = case.run(
+    "case.nml",
+    [("cohesion = 15.0e3", "cohesion = 25.0e3"), ("duration = 0.6", "duration = 1.0")],
+    name="strong",
+).history()
+case.check(
+    "25 kPa, opened: it stays [m]",
+    strong["maximum_displacement"].max(),
+    0.1,
+    "elastic unloading swings by twice its static 3 cm",
+)
+case.check_true(
+    "25 kPa, opened: plastic work has ended",
+    np.ptp(strong["energy_plastic"][-20:]) < 0.02 * strong["energy_plastic"][-1],
+)
 sys.exit(case.verdict())

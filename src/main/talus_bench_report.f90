@@ -55,7 +55,8 @@ contains
 
     call date_and_time(values=now)
     write (date, '(i4.4,2("-",i2.2))') now(1:3)
-    text = 'Machine: '//processor()//'; date: '//date//'; TALUS '//version//' ('//git_hash// &
+    text = 'Machine: '//processor()//load_average()//'; date: '//date//'; TALUS '// &
+      version//' ('//git_hash// &
       '), '// &
       compiler_version()//'.'//nl//nl// &
       'A slope of 375 m2. "one level": one level of smoothing, Drucker-Prager, stabilised. '// &
@@ -282,6 +283,20 @@ contains
     end if
     cell = ' '//trim(adjustl(buffer))//' |'
   end function number
+
+  !> What else the machine does: mean number of jobs over five minutes, this one among them.
+  function load_average() result(text)
+    character(:), allocatable :: text
+    real(dp) :: load(2)
+    integer :: unit, failed
+
+    text = ''
+    open (newunit=unit, file='/proc/loadavg', status='old', action='read', iostat=failed)
+    if (failed /= 0) return
+    read (unit, *, iostat=failed) load
+    if (failed == 0) text = ', '//text_of(load(2), 2)//' jobs at work'
+    close (unit, iostat=failed)
+  end function load_average
 
   !> Name of the processor and the number of them, as the kernel tells.
   function processor() result(name)

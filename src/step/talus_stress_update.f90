@@ -8,7 +8,8 @@ module talus_stress_update
   use talus_state, only: state_t
   use talus_objective, only: strain_advance, piola_stress
   use talus_soil_law, only: soil_law_t, soil_update, soil_ok, history_size, &
-    history_size_plastic, stress_bishop, stress_net, bishop_factor, bishop_subtract, soil_stored_energy, history_damage
+    history_size_plastic, stress_bishop, stress_net, bishop_factor, bishop_subtract, &
+    soil_stored_energy, history_damage
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_storage, only: storage_invert
   implicit none

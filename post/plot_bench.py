@@ -47,8 +47,10 @@ def draw_scaling(rows, path, dpi):
     axes[0].set_ylabel("Million node-steps per second")
     axes[1].set_ylabel("Fraction of what STREAM triad allows")
     axes[1].set_ylim(0.0, None)
-    axes[0].set_ylim(0.0, 1.35 * axes[0].get_ylim()[1])
-    axes[0].legend(loc="upper right", ncols=2, frameon=False)
+    axes[0].set_ylim(0.0, None)
+    axes[0].figure.legend(
+        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
+    )
     for axis in axes:
         axis.set_xscale("log")
         axis.set_xlabel("Nodes")

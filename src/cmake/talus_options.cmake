@@ -10,7 +10,7 @@ set(gnu_debug "$<AND:${gnu},$<CONFIG:Debug>>")
 target_compile_options(talus_options INTERFACE
   "$<${gnu}:-std=f2008;-pedantic;-Wall;-Wextra;-Wimplicit-interface;-Wimplicit-procedure>"
   "$<${gnu}:-Wconversion-extra;-Wcharacter-truncation;-fbacktrace>"
-  # gfortran takes descriptors of allocatables it sets up itself for uninitialised (GCC bug 77504).
+  # gfortran 12 takes descriptors of allocatables it sets up itself for uninitialised.
   # Debug's signalling NaN catches reals that are.
   "$<${gnu}:-Wno-uninitialized;-Wno-maybe-uninitialized>"
   "$<${gnu_debug}:-Og;-fcheck=all;-finit-real=snan>")

@@ -3,6 +3,7 @@
 !> rounds, so that other work on the machine slows all of it alike; medians of five rounds are kept.
 module talus_bench_measure
   use talus_kinds, only: dp, i8
+  use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
   use talus_session, only: session_t
   use talus_timer, only: timer_t, timer_start, timer_stop
@@ -64,7 +65,7 @@ contains
     integer :: r, t, p, steps, most
 
     most = omp_get_max_threads()
-    held = memory('VmRSS:')
+    held = memory_held('VmRSS:')
     call memory_forget
     allocate (speed(size(threads)), whole(rounds, size(threads)), band(rounds, size(threads)))
     allocate (phase(rounds, phases, size(threads)), source=0.0_dp)
@@ -98,7 +99,7 @@ contains
         speed(t)%phase(p) = median(phase(:, p, t))
       end do
     end do
-    if (held > 0_i8) speed%peak = memory('VmHWM:') - held
+    if (held > 0_i8) speed%peak = memory_held('VmHWM:') - held
   end subroutine measure_speed
 
   !> Prices of models, on one thread; the first is the unit.
@@ -159,26 +160,6 @@ contains
     end do
     median = 0.5_dp*(sorted((size(sorted) + 1)/2) + sorted(size(sorted)/2 + 1))
   end function median
-
-  !> Memory of the program by the kernel's account [bytes]; 0 where there is none.
-  integer(i8) function memory(label) result(bytes)
-    character(*), intent(in) :: label !! VmRSS: now, VmHWM: the most so far
-    character(200) :: line
-    integer :: unit, failed, kilobytes
-
-    bytes = 0_i8
-    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=failed)
-    if (failed /= 0) return
-    do
-      read (unit, '(a)', iostat=failed) line
-      if (failed /= 0) exit
-      if (line(:len(label)) /= label) cycle
-      read (line(len(label)+1:index(line, 'kB')-1), *, iostat=failed) kilobytes
-      if (failed == 0) bytes = int(kilobytes, i8)*1024_i8
-      exit
-    end do
-    close (unit)
-  end function memory
 
   !> Let the kernel count the most memory anew.
   subroutine memory_forget

@@ -3,7 +3,8 @@
 module talus_report
   use, intrinsic :: iso_fortran_env, only: compiler_version
   use omp_lib, only: omp_get_max_threads
-  use talus_kinds, only: dp, i8
+  use talus_kinds, only: dp
+  use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_session, only: session_t
@@ -16,7 +17,7 @@ module talus_report
   use talus_version, only: version, git_hash
   implicit none
   private
-  public :: report_summary, peak_memory_bytes
+  public :: report_summary
 
 contains
 
@@ -93,7 +94,7 @@ contains
         + timer_seconds(session%timer, 'strength_reduction')
       if (soil > 0.0_dp) call summary_set(summary, 'node_steps_per_second', &
         real(session%disc%n, dp)*real(state%steps, dp)/soil)
-      call summary_set(summary, 'peak_memory_bytes', peak_memory_bytes())
+      call summary_set(summary, 'peak_memory_bytes', memory_held('VmHWM:'))
     end associate
   end subroutine report_cost
 
@@ -116,23 +117,4 @@ contains
       end if
     end associate
   end subroutine report_answers
-
-  !> Most memory the program has held [bytes], from the kernel; 0 where it does not say.
-  integer(i8) function peak_memory_bytes() result(bytes)
-    character(200) :: line
-    integer :: unit, failed, kilobytes
-
-    bytes = 0_i8
-    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=failed)
-    if (failed /= 0) return
-    do
-      read (unit, '(a)', iostat=failed) line
-      if (failed /= 0) exit
-      if (line(:6) /= 'VmHWM:') cycle
-      read (line(7:index(line, 'kB')-1), *, iostat=failed) kilobytes
-      if (failed == 0) bytes = int(kilobytes, i8)*1024_i8
-      exit
-    end do
-    close (unit)
-  end function peak_memory_bytes
 end module talus_report

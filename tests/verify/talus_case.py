@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Runs a verification deck with the real program and compares it with its reference.
 
-A case is a folder of tests/verify with its decks, its reference data and a check.py that ends with
-`sys.exit(case.verdict())`. Every check prints the measured value, the limit and why it is that.
+A case is a folder of tests/verify or tests/hard with its decks, its reference data and a check.py that
+ends with `sys.exit(case.verdict())`. Every check prints the measured value, the limit and why it is that.
+With `--report FILE` all that the case measured is stored as JSON too, from which `./talus verify` writes
+tests/README.md; with `--full` the case runs all of its spacings, else those that a quick test affords.
 """
 
 import argparse
 import csv
+import json
 import pathlib
 import subprocess
 import sys
@@ -19,12 +22,29 @@ import numpy as np
 class Case:
     """One verification case: runs decks in a scratch folder and collects checks."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, id="", title="", error="", reference=""):
+        """`id` as in the report (H3), `title` of the case, `error`: the norm, `reference`: its source."""
         parser = argparse.ArgumentParser(description="Run one verification case.")
         parser.add_argument("program", help="path of the talus program")
         parser.add_argument("--keep", help="folder to keep the results in")
+        parser.add_argument("--full", action="store_true", help="all spacings, not the quick ones only")
+        parser.add_argument("--report", help="JSON file to store the measured values in")
         self.options = parser.parse_args()
+        self.full = self.options.full
         self.folder = pathlib.Path(folder)
+        self.story = {
+            "case": self.folder.name,
+            "id": id,
+            "title": title,
+            "error": error,
+            "reference": reference,
+            "full": self.full,
+            "runs": [],
+            "targets": [],
+            "remedies": [],
+            "pictures": [],
+            "notes": [],
+        }
         self._scratch = tempfile.TemporaryDirectory()
         self.scratch = pathlib.Path(self.options.keep or self._scratch.name)
         self.failures = 0
@@ -72,9 +92,111 @@ class Case:
         self.failures += not good
         print(f"{'ok  ' if good else 'FAIL'} {what}")
 
+    def study(self, series, result, spacing, error):
+        """One run of a study in mesh size: a row of the report's table, a point of its picture.
+
+        `series` names the curve ("one level, regular"), `spacing` in m, `error` relative, in the norm of
+        the case. Nodes, seconds, speed, smoothing and stabilisation come from the summary of the run.
+        """
+        summary = result.summary
+        levels = int(summary["smoothing_levels"])
+        self.story["runs"].append(
+            {
+                "series": series,
+                "nodes": int(summary["nodes"]),
+                "spacing": float(spacing),
+                "error": float(error),
+                "seconds": float(summary["wall_seconds"]),
+                "seconds_set_up": float(summary["wall_seconds_set_up"]),
+                "steps": int(summary["steps"]),
+                "seepage_steps": int(summary["seepage_steps"]),
+                "node_steps_per_second": speed(summary),
+                "threads": int(summary["threads"]),
+                "smoothing": "one level" if levels == 1 else f"two levels, {summary['smoothing_length']} m",
+                "stabilisation": float(summary["stabilisation"]),
+            }
+        )
+        print(f"     {series}, spacing {spacing:g} m: error {error:.4g}, {summary['wall_seconds']} s")
+
+    def target(self, what, value, limit, why, low=None, held=None):
+        """A number to meet: at most `limit`, and at least `low` where given. It enters the report.
+
+        Where TALUS misses it, `held` = (low, limit) is the range that this check holds instead; the report
+        then names the miss in its first lines, with the value.
+        """
+        met = bool(np.isfinite(value)) and value <= limit and (low is None or value >= low)
+        good = met
+        if not met and held is not None:
+            good = bool(np.isfinite(value)) and held[0] <= value <= held[1]
+        self.failures += not good
+        self.story["targets"].append(
+            {
+                "what": what,
+                "value": float(value),
+                "limit": float(limit),
+                "low": None if low is None else float(low),
+                "met": met,
+                "why": why,
+            }
+        )
+        span = f"limit {limit:.6g}" if low is None else f"{low:.6g} to {limit:.6g}"
+        word = "ok  " if met else ("miss" if good else "FAIL")
+        print(f"{word} {what}: {value:.6g} ({span}: {why})")
+
+    def remedy(self, what, without, remedied, shown):
+        """What goes wrong without a remedy, run and shown.
+
+        `what` tells hazard and remedy, `without` and `remedied` what was measured without and with it (text
+        with numbers); `shown` is true if the run without the remedy did go wrong.
+        """
+        self.failures += not shown
+        self.story["remedies"].append(
+            {"what": what, "without": without, "remedied": remedied, "shown": bool(shown)}
+        )
+        print(f"{'ok  ' if shown else 'FAIL'} {what}: without {without}; with {remedied}")
+
+    def picture(self, name, x_label, y_label, curves, log_x=False, log_y=False):
+        """A line picture of the report. `curves`: name -> (x, y) or (x, y, matplotlib format)."""
+        self.story["pictures"].append(
+            {
+                "name": name,
+                "x_label": x_label,
+                "y_label": y_label,
+                "log_x": log_x,
+                "log_y": log_y,
+                "curves": [
+                    {
+                        "name": title,
+                        "x": np.asarray(curve[0], float).tolist(),
+                        "y": np.asarray(curve[1], float).tolist(),
+                        "style": curve[2] if len(curve) > 2 else "-",
+                    }
+                    for title, curve in curves.items()
+                ],
+            }
+        )
+
+    def note(self, text):
+        """A sentence for the report."""
+        self.story["notes"].append(text)
+        print(f"     {text}")
+
     def verdict(self):
+        self.story["failures"] = self.failures
+        if self.options.report:
+            path = pathlib.Path(self.options.report)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(json.dumps(self.story, indent=1) + "\n")
         print(f"{self.failures} checks failed")
         return 1 if self.failures else 0
+
+
+def speed(summary):
+    """Node-steps a second of the soil, or of the water's sub-steps where the soil does not step."""
+    if int(summary["steps"]) > 0 and "node_steps_per_second" in summary:
+        return float(summary["node_steps_per_second"])
+    seconds = float(summary.get("wall_seconds_seepage", 0.0))
+    return int(summary["nodes"]) * int(summary["seepage_steps"]) / seconds if seconds > 0 else None
 
 
 class Result:

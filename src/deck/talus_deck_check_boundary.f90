@@ -77,7 +77,7 @@ contains
     end do
   end subroutine check_stage_names
 
-  !> A velocity already holds its direction.
+  !> A velocity already holds its direction, a velocity gradient both.
   subroutine check_motion(store, section, boundary, messages)
     type(store_t), intent(in) :: store
     integer, intent(in) :: section
@@ -94,6 +94,15 @@ contains
         call complain(store, section, 'velocity_y', 'displacement = '''//held// &
             ''' holds y at rest', &
                       messages, 'velocity_y with ''free'' or ''roller_x''')
+      end if
+      if (size(boundary%velocity_gradient) == 0) return
+      if (size(boundary%velocity_gradient) /= 4) then
+        call complain(store, section, 'velocity_gradient', 'not four values', messages, &
+                      'dvx/dx, dvx/dy, dvy/dx, dvy/dy')
+      else if (held /= 'free' .or. deck_given(boundary%velocity_x) .or. &
+               deck_given(boundary%velocity_y)) then
+        call complain(store, section, 'velocity_gradient', 'the motion is prescribed twice', &
+                      messages, 'displacement = ''free'', no velocity_x, no velocity_y')
       end if
     end associate
   end subroutine check_motion
@@ -164,7 +173,8 @@ contains
     real(dp) :: loads(3)
 
     if (boundary%displacement /= 'free' .or. boundary%water /= 'none') return
-    if (deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y)) return
+    if (deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y) .or. &
+        size(boundary%velocity_gradient) > 0) return
     loads = [boundary%traction_x, boundary%traction_y, boundary%pressure]
     if (.not. all(deck_given(loads))) return
     if (maxval(abs(loads)) > 0.0_dp) return

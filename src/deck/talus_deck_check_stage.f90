@@ -176,9 +176,11 @@ contains
         if (.not. deck_acts_in(boundary, stage%name)) cycle
         if (boundary%displacement == '') return
         holds_x = holds_x .or. boundary%displacement == 'fixed' .or. &
-                  boundary%displacement == 'roller_x' .or. deck_given(boundary%velocity_x)
+                  boundary%displacement == 'roller_x' .or. deck_given(boundary%velocity_x) .or. &
+                  size(boundary%velocity_gradient) > 0
         holds_y = holds_y .or. boundary%displacement == 'fixed' .or. &
-                  boundary%displacement == 'roller_y' .or. deck_given(boundary%velocity_y)
+                  boundary%displacement == 'roller_y' .or. deck_given(boundary%velocity_y) .or. &
+                  size(boundary%velocity_gradient) > 0
       end associate
     end do
     if (stage%kind == 'dynamic') then

@@ -86,6 +86,13 @@ contains
              'Prescribed velocity along x, held still in a geostatic stage; absent: none.')
     call key(t, 'velocity_y', 'real', 'm/s', '', '[-1e3, 1e3]', &
              'Prescribed velocity along y, held still in a geostatic stage; absent: none.')
+    call key(t, 'velocity_gradient', 'real_list', '1/s', '', '[-1e3, 1e3]', &
+             'Prescribed homogeneous motion: dvx/dx, dvx/dy, dvy/dx, dvy/dy about the centre, '// &
+             'held still in a geostatic stage; a spin w is 0, -w, w, 0; absent: none.')
+    call key(t, 'centre_x', 'real', 'm', '0', '[-1e7, 1e7]', &
+             'x of the fixed point of velocity_gradient.')
+    call key(t, 'centre_y', 'real', 'm', '0', '[-1e7, 1e7]', &
+             'y of the fixed point of velocity_gradient.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
     call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
         'Traction along y, upward positive.')

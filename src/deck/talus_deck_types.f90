@@ -90,6 +90,8 @@ module talus_deck_types
     character(name_length), allocatable :: stages(:)
     character(:), allocatable :: displacement
     real(dp) :: velocity_x, velocity_y, traction_x, traction_y, pressure
+    real(dp), allocatable :: velocity_gradient(:) !! xx, xy, yx, yy; size 0 when absent
+    real(dp) :: centre_x, centre_y
     character(:), allocatable :: water
     real(dp) :: head, flux, rain
     character(:), allocatable :: hydrograph    !! path that opens from the working folder

@@ -8,7 +8,7 @@ module talus_setup_conditions
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
-    inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, inlet_none, inlet_head, &
+    conditions_deform, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, inlet_none, inlet_head, &
     inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_t, rain_constant, rain_read
   use talus_steady, only: steady_heads
@@ -78,7 +78,7 @@ contains
   end subroutine setup_steady
 
   !> Held and driven directions.
-  pure subroutine add_supports(boundary, set, conditions)
+  subroutine add_supports(boundary, set, conditions)
     type(boundary_t), intent(in) :: boundary
     type(boundary_set_t), intent(in) :: set
     type(conditions_t), intent(inout) :: conditions
@@ -91,6 +91,8 @@ contains
       call conditions_hold(conditions, set, 1, boundary%velocity_x)
     if (deck_given(boundary%velocity_y)) &
       call conditions_hold(conditions, set, 2, boundary%velocity_y)
+    if (size(boundary%velocity_gradient) == 4) call conditions_deform(conditions, set, &
+      boundary%velocity_gradient, [boundary%centre_x, boundary%centre_y])
   end subroutine add_supports
 
   !> Where water enters and leaves.

@@ -11,6 +11,7 @@ module talus_stages
   use talus_session, only: session_t
   use talus_setup_ground, only: ground_intact
   use talus_setup_conditions, only: setup_conditions
+  use talus_conditions, only: conditions_follow
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
@@ -311,6 +312,9 @@ contains
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
       call look_at_step(session, travelled)
+      if (allocated(session%conditions%motion)) call conditions_follow(session%conditions, &
+        session%disc%mesh%x, session%state%u, session%motion%step, session%motion%step, &
+        session%state%v)
       if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
                                                        session%state)
       call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &

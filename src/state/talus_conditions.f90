@@ -6,9 +6,11 @@ module talus_conditions
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t
   use talus_rain, only: rain_t
+  use talus_homogeneous_motion, only: motion_map, motion_velocity_about
   implicit none
   private
   public :: conditions_t, inlets_t, conditions_allocate, conditions_hold, conditions_load
+  public :: conditions_deform, conditions_follow
   public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch
 
   integer, parameter, public :: inlet_none = 0, inlet_head = 1, inlet_flux = 2, inlet_rain = 3, &
@@ -30,6 +32,10 @@ module talus_conditions
     real(dp), allocatable :: given(:,:)  !! prescribed velocity [m/s], (2,n)
     logical :: driven = .false.          !! some prescribed velocity is not zero
     real(dp), allocatable :: traction(:,:) !! dead load on the boundary [N/m], (2,n)
+    ! Homogeneous motions; allocated where the stage has one.
+    integer, allocatable :: motion(:)      !! number of a node's motion, 0 for none, (n)
+    real(dp), allocatable :: gradient(:,:) !! velocity gradient xx, xy, yx, yy [1/s], (4,motions)
+    real(dp), allocatable :: centre(:,:)   !! fixed point [m], (2,motions)
     type(inlets_t) :: inlets
   end type conditions_t
 
@@ -59,8 +65,54 @@ contains
 
     conditions%held(direction, set%node) = .true.
     conditions%given(direction, set%node) = velocity
+    if (allocated(conditions%motion)) conditions%motion(set%node) = 0
     if (abs(velocity) > 0.0_dp) conditions%driven = .true.
   end subroutine conditions_hold
+
+  !> Let the nodes of a set follow a homogeneous motion, in place of what was prescribed for them.
+  subroutine conditions_deform(conditions, set, gradient, centre)
+    type(conditions_t), intent(inout) :: conditions
+    type(boundary_set_t), intent(in) :: set
+    real(dp), intent(in) :: gradient(4) !! of velocity, xx, xy, yx, yy [1/s]
+    real(dp), intent(in) :: centre(2)   !! fixed point [m]
+    integer :: i, motions
+
+    call conditions_hold(conditions, set, 1, 0.0_dp)
+    call conditions_hold(conditions, set, 2, 0.0_dp)
+    if (.not. allocated(conditions%motion)) then
+      allocate (conditions%motion(size(conditions%held, 2)), source=0)
+      allocate (conditions%gradient(4, 0), conditions%centre(2, 0))
+    end if
+    motions = size(conditions%gradient, 2) + 1
+    conditions%gradient = reshape([(conditions%gradient(:, i), i=1, motions - 1), gradient], &
+                                  [4, motions])
+    conditions%centre = reshape([(conditions%centre(:, i), i=1, motions - 1), centre], &
+                                [2, motions])
+    conditions%motion(set%node) = motions
+    conditions%driven = .true.
+  end subroutine conditions_deform
+
+  !> Velocities of one step that take nodes to where their homogeneous motion takes them in a time:
+  !> the step itself, or a share of a storm step.
+  pure subroutine conditions_follow(conditions, x, u, time, step, v)
+    type(conditions_t), intent(in) :: conditions
+    real(dp), intent(in) :: x(:,:)    !! reference places [m], (2,n)
+    real(dp), intent(in) :: u(:,:)    !! displacement before the step [m], (2,n)
+    real(dp), intent(in) :: time      !! [s]
+    real(dp), intent(in) :: step      !! [s]
+    real(dp), intent(inout) :: v(:,:) !! [m/s], (2,n)
+    real(dp) :: map(4, size(conditions%gradient, 2))
+    integer :: i, k
+
+    do k = 1, size(map, 2)
+      map(:, k) = motion_map(conditions%gradient(:, k), time)
+    end do
+    do i = 1, size(conditions%motion)
+      k = conditions%motion(i)
+      if (k > 0) v(:, i) = motion_velocity_about(map(:, k), &
+        x(:, i) - conditions%centre(:, k) + u(:, i), step)
+    end do
+  end subroutine conditions_follow
 
   !> Add tractions to the nodes of a set.
   pure subroutine conditions_load(conditions, set, traction, pressure)

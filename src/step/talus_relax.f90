@@ -6,7 +6,7 @@ module talus_relax
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_conditions, only: conditions_t
+  use talus_conditions, only: conditions_t, conditions_follow
   use talus_soil_step, only: work_t, motion_t, soil_step, soil_force
   use talus_time_step, only: time_step_stable, water_bulk_modulus
   use talus_soil_law, only: stress_bishop
@@ -138,8 +138,8 @@ contains
     do while (outcome%steps < steps_max)
       if (modulo(outcome%steps + 1, look_every) == 0) force = work%force
       travels = outcome%steps < ramp
-      if (travels .or. outcome%steps == ramp) call drive_nodes(conditions, &
-        travel*ramp_share(outcome%steps + 1, ramp)/motion%step, state)
+      if (travels .or. outcome%steps == ramp) call drive_nodes(disc, conditions, &
+        travel*ramp_share(outcome%steps + 1, ramp), motion%step, state)
       if (travels) call audit_driven(motion, work%force, state)
       call soil_step(disc, ground, motion, state, work, outcome%failed)
       outcome%steps = outcome%steps + 1
@@ -185,13 +185,18 @@ contains
                           /real(ramp, dp)
   end function ramp_share
 
-  !> Let driven nodes move at a multiple of their velocity, and held ones rest.
-  pure subroutine drive_nodes(conditions, multiple, state)
+  !> Let driven nodes move in one step as far as their velocity takes them in a time, and held ones
+  !> rest.
+  pure subroutine drive_nodes(disc, conditions, time, step, state)
+    type(disc_t), intent(in) :: disc
     type(conditions_t), intent(in) :: conditions
-    real(dp), intent(in) :: multiple !! [-]
+    real(dp), intent(in) :: time !! [s]
+    real(dp), intent(in) :: step !! [s]
     type(state_t), intent(inout) :: state
 
-    where (conditions%held) state%v = multiple*conditions%given
+    where (conditions%held) state%v = time/step*conditions%given
+    if (allocated(conditions%motion)) call conditions_follow(conditions, disc%mesh%x, state%u, &
+                                                             time, step, state%v)
   end subroutine drive_nodes
 
   !> Critical damping of the motion as it is now [1/s]: twice its frequency, by the quotient of

@@ -124,7 +124,7 @@ class Case:
         Where TALUS misses it, `held` = (low, limit) is the range that this check holds instead; the report
         then names the miss in its first lines, with the value.
         """
-        met = bool(np.isfinite(value)) and value <= limit and (low is None or value >= low)
+        met = bool(np.isfinite(value) and value <= limit and (low is None or value >= low))
         good = met
         if not met and held is not None:
             good = bool(np.isfinite(value)) and held[0] <= value <= held[1]

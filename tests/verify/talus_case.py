@@ -39,18 +39,35 @@ class Case:
             "error": error,
             "reference": reference,
             "full": self.full,
+            "checks": 0,
             "runs": [],
             "targets": [],
             "remedies": [],
             "pictures": [],
             "notes": [],
         }
+        self.published, self.story["published_source"] = read_published(self.folder / "published.csv")
+        self.story["published"] = self.published
         self._scratch = tempfile.TemporaryDirectory()
         self.scratch = pathlib.Path(self.options.keep or self._scratch.name)
         self.failures = 0
 
-    def run(self, deck, replace=(), threads=1, code=0, name=None):
-        """Run a deck, with (old, new) text replacements, and return its Result."""
+    def run(self, deck, replace=(), threads=1, code=0, name=None, repeat=1):
+        """Run a deck, with (old, new) text replacements, and return its Result.
+
+        Repeated runs (their fields are the same) give the Result of median wall time.
+        """
+        done = [self._run(deck, replace, threads, code, name) for _ in range(repeat)]
+        done.sort(key=lambda result: float(result.summary.get("wall_seconds", 0.0)))
+        result = done[repeat // 2]
+        result.repeats = repeat
+        summary = result.summary
+        if "git_hash" in summary:
+            self.story["version"] = f"{summary['version']} ({summary['git_hash']})"
+            self.story["compiler"] = summary["compiler"]
+        return result
+
+    def _run(self, deck, replace, threads, code, name):
         text = (self.folder / deck).read_text()
         for old, new in replace:
             if old not in text:
@@ -85,10 +102,12 @@ class Case:
     def check(self, what, value, limit, why):
         """A value that may not exceed its limit."""
         good = bool(np.isfinite(value)) and value <= limit
+        self.story["checks"] += 1
         self.failures += not good
         print(f"{'ok  ' if good else 'FAIL'} {what}: {value:.6g} (limit {limit:.6g}: {why})")
 
     def check_true(self, what, good):
+        self.story["checks"] += 1
         self.failures += not good
         print(f"{'ok  ' if good else 'FAIL'} {what}")
 
@@ -107,6 +126,7 @@ class Case:
                 "spacing": float(spacing),
                 "error": float(error),
                 "seconds": float(summary["wall_seconds"]),
+                "repeats": result.repeats,
                 "seconds_set_up": float(summary["wall_seconds_set_up"]),
                 "steps": int(summary["steps"]),
                 "seepage_steps": int(summary["seepage_steps"]),
@@ -142,6 +162,21 @@ class Case:
         span = f"limit {limit:.6g}" if low is None else f"{low:.6g} to {limit:.6g}"
         word = "ok  " if met else ("miss" if good else "FAIL")
         print(f"{word} {what}: {value:.6g} ({span}: {why})")
+
+    def compare_time(self, result, error, program, what=None):
+        """Time of a run against what a program of published.csv needs for the same error, or a finer one.
+
+        With `what` ("201 rows") it is a target to need less time, else a note.
+        """
+        points = [p for p in self.published if p["program"] == program]
+        theirs, finest = seconds_at(points, error), min(p["error"] for p in points)
+        ours = float(result.summary["wall_seconds"])
+        story = f"{program} needs {theirs:.3g} s for " + (
+            f"that error of {error:.2g}" if error >= finest else f"its finest error, {finest:.2g}"
+        )
+        if what:
+            self.target(f"time at {what} over that of {program}", ours / theirs, 1.0, story)
+        self.note(f"TALUS takes {ours:.3g} s for an error of {error:.2g}; {story}.")
 
     def remedy(self, what, without, remedied, shown):
         """What goes wrong without a remedy, run and shown.
@@ -199,8 +234,46 @@ def speed(summary):
     return int(summary["nodes"]) * int(summary["seepage_steps"]) / seconds if seconds > 0 else None
 
 
+def read_published(path):
+    """Points of other programs, and their source, from a CSV file if there is one.
+
+    Comment lines (#) tell the source; then columns program, nodes (may be empty), error, seconds.
+    """
+    if not path.exists():
+        return [], ""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    source = " ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return [
+        {
+            "program": row["program"],
+            "nodes": int(row["nodes"]) if row["nodes"] else None,
+            "error": float(row["error"]),
+            "seconds": float(row["seconds"]),
+        }
+        for row in rows
+    ], source
+
+
+def seconds_at(points, error):
+    """Seconds that a program needs for an error, between its published points (both logarithmic).
+
+    Finer than its finest point it needs at least that one's time, which is what is returned: never more
+    than was published. Coarser than its coarsest, the line through the first two points goes on.
+    """
+    points = sorted(points, key=lambda p: -p["error"])
+    x = np.log([p["error"] for p in points])
+    y = np.log([p["seconds"] for p in points])
+    at = np.log(error)
+    if at > x[0]:
+        return float(np.exp(y[0] + (at - x[0]) * (y[1] - y[0]) / (x[1] - x[0])))
+    return float(np.exp(np.interp(-at, -x, y)))
+
+
 class Result:
     """Files of one run."""
+
+    repeats = 1
 
     def __init__(self, place, name, done):
         self.place, self.name, self.done = place, name, done

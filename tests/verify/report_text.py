@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""The text of tests/README.md, from the stories of the cases."""
+
+import math
+import re
+
+from case_list import GROUPS, group_of
+
+INTRODUCTION = """\
+Written by `./talus verify`, which runs every case of [verify]({tests}/verify) and [hard]({tests}/hard)
+with the real program, at all of its spacings, and compares with exact or published answers. `./talus
+verify H3` (or `celia`, `hard4`, `hard`) runs a few and updates theirs; `./talus test` runs a quick
+subset, without a report. Limits are part of the cases; nothing is fitted to pass. Tables:
+[studies.csv](report/studies.csv), [targets.csv](report/targets.csv); all that was measured: the JSON
+files in [report](report)."""
+
+TIMES = """\
+Times are wall times of the whole program, set-up and output included, with one thread, while other cases
+ran on the other processors; runs of a tenth of a second vary by some tens of percent. Where a time is
+compared, the run is the median of three. Node-steps per second are of the soil's steps, or of the water's
+sub-steps where only water moves."""
+
+
+def number(value):
+    """Three digits, plain where that is readable: 0.00835, 1.3e-13, 402."""
+    if value is None:
+        return "-"
+    if not math.isfinite(value):
+        return str(value)
+    if value == int(value) and abs(value) < 1e6:
+        return str(int(value))
+    if 1e-3 <= abs(value) < 1e6:
+        digits = max(0, 3 - 1 - math.floor(math.log10(abs(value))))
+        text = f"{value:.{digits}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
+
+
+def cell(text):
+    """Text of a table's cell."""
+    return str(text).replace("|", "\\|").replace("\n", " ")
+
+
+def table(head, rows, right=()):
+    """A Markdown table; `right` holds the numbers of the columns that are aligned to the right."""
+    rule = ["--:" if i in right else "---" for i in range(len(head))]
+    lines = [head, rule, *[[cell(value) for value in row] for row in rows]]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def wanted(target):
+    """'<= 0.015' or '1.35 to 1.41'."""
+    if target["low"] is None:
+        return f"≤ {number(target['limit'])}"
+    return f"{number(target['low'])} to {number(target['limit'])}"
+
+
+def anchor(story):
+    """The heading's anchor, as GitHub makes it."""
+    return re.sub(r"[^\w\- ]", "", heading(story).lower()).replace(" ", "-")
+
+
+def heading(story):
+    words = story["title"] or story["case"].replace("_", " ")
+    return f"{story['id']}: {words}" if story["id"] else words[:1].upper() + words[1:]
+
+
+def link(story):
+    return f"[{story['id'] or story['case']}](#{anchor(story)})"
+
+
+def report_text(stories, missing, pictures, run, tests):
+    """All of tests/README.md.
+
+    `missing`: cases without results; `pictures`: (path, caption) by key; `run`: facts about the last run
+    of all cases; `tests`: relative path of the folder of sources.
+    """
+    parts = ["# Verification report", verdict(stories, missing), "", INTRODUCTION.format(tests=tests)]
+    parts += ["", machines(stories, run), "", TIMES, "", "## Targets", "", targets_table(stories)]
+    for letter, title in GROUPS:
+        members = [s for s in stories if group_of(s["kind"], s["id"]) == letter]
+        if members:
+            parts += ["", f"## {title}"]
+        for story in members:
+            parts += ["", case_text(story, pictures[story["key"]], tests)]
+    return "\n".join(parts) + "\n"
+
+
+def verdict(stories, missing):
+    """The first lines: what failed, what is not met, what has not run."""
+    targets = [(s, t) for s in stories for t in s["targets"]]
+    missed = [(s, t) for s, t in targets if not t["met"]]
+    lines = [""]
+    for s in stories:
+        if s["trouble"]:
+            lines += [f"**Failed: {link(s)}**, {s['trouble']}", ""]
+        elif s["failures"]:
+            lines += [f"**Failed: {link(s)}**, {s['failures']} of its checks.", ""]
+    if missed:
+        lines += [f"**{len(missed)} of {len(targets)} targets are not met:**", ""]
+        lines += [
+            f"- {link(s)} {t['what']}: **{number(t['value'])}** measured, {wanted(t)} wanted ({t['why']})"
+            for s, t in missed
+        ]
+    elif targets:
+        lines += [f"**All {len(targets)} targets are met.**"]
+    if missing:
+        lines += ["", f"No results yet of: {', '.join(case.label for case in missing)}."]
+    return "\n".join(lines)
+
+
+def machines(stories, run):
+    """Machine, compiler, version, dates and times of what is reported."""
+
+    def all_of(name):
+        return " and ".join(sorted({str(s[name]) for s in stories if s.get(name)})) or "unknown"
+
+    dates = sorted({s["date"] for s in stories if s.get("date")})
+    when = dates[0] if len(dates) == 1 else f"{dates[0]} to {dates[-1]}" if dates else "unknown"
+    seconds = sum(s.get("case_seconds", 0.0) for s in stories)
+    lines = [
+        f"Machine: {all_of('machine')}. Compiler: {all_of('compiler')}. "
+        f"Program: TALUS {all_of('version')}. Date: {when}.",
+        f"The {len(stories)} cases take {seconds:.0f} s, added up"
+        + (
+            f"; the last run of all of them took {run['elapsed']} s with {run['jobs']} at a time, "
+            f"and began with {run['load']} jobs at work on the machine."
+            if run
+            else "."
+        ),
+    ]
+    return "\n".join(lines)
+
+
+def targets_table(stories):
+    rows = [
+        [
+            link(s),
+            t["what"],
+            f"**{number(t['value'])}**",
+            wanted(t),
+            "yes" if t["met"] else "**no**",
+            t["why"],
+        ]
+        for s in stories
+        for t in s["targets"]
+    ]
+    return table(["case", "target", "measured", "wanted", "met", "why this"], rows, right=(2, 3))
+
+
+def study_table(story):
+    """Rows of the study; a repeated series, smoothing or stabilisation stays, for those who copy a row."""
+    rows = [
+        [
+            r["series"],
+            r["nodes"],
+            number(r["spacing"]),
+            number(r["error"]),
+            "-" if r["order"] is None else f"{r['order']:.2f}",
+            number(r["seconds"]) + (f" (median of {r['repeats']})" if r.get("repeats", 1) > 1 else ""),
+            "-" if r["node_steps_per_second"] is None else f"{r['node_steps_per_second'] / 1e6:.2f}",
+            r["smoothing"],
+            number(r["stabilisation"]),
+        ]
+        for r in story["runs"]
+    ]
+    head = ["series", "nodes", "spacing [m]", "error", "order", "wall [s]", "10⁶ node-steps/s"]
+    return table([*head, "smoothing", "stabilisation"], rows, right=range(1, 7))
+
+
+def published_table(story):
+    rows = [
+        [p["program"], p["nodes"] or "-", number(p["error"]), number(p["seconds"])]
+        for p in story["published"]
+    ]
+    return table(["others, published", "nodes", "error", "wall [s]"], rows, right=(1, 2, 3))
+
+
+def case_text(story, pictures, tests):
+    """One case: what it is, its reference, tables, targets, remedies, notes and pictures."""
+    folder = f"{tests}/{story['kind']}/{story['case']}"
+    facts = [f"Case: [{story['kind']}/{story['case']}]({folder})"]
+    facts += [f"reference: {story['reference'].rstrip('.')}"] if story["reference"] else []
+    facts += [f"error: {story['error'].rstrip('.')}"] if story["error"] else []
+    took = f"{story.get('case_seconds', 0.0):g} s on {story.get('date', 'an unknown date')}"
+    parts = [f"### {heading(story)}", "", about(story["about"]), "", "; ".join(facts) + f". It took {took}."]
+    if story["trouble"]:
+        parts += ["", f"**It failed:** {story['trouble']}"]
+    if not story.get("full", True):
+        parts += ["", "Run at its quick spacings only."]
+    if story["runs"]:
+        parts += ["", study_table(story)]
+    if story["published"]:
+        parts += ["", published_table(story), "", f"Source of these: {story['published_source']}"]
+    if story["targets"]:
+        rows = [
+            [t["what"], f"**{number(t['value'])}**", wanted(t), "yes" if t["met"] else "**no**"]
+            for t in story["targets"]
+        ]
+        parts += ["", table(["target", "measured", "wanted", "met"], rows, right=(1, 2))]
+    if story["remedies"]:
+        rows = [[r["what"], r["without"], r["remedied"]] for r in story["remedies"]]
+        parts += ["", table(["hazard and remedy", "without the remedy", "with it"], rows)]
+    if story.get("checks"):
+        parts += ["", checks_line(story)]
+    parts += ["", *[f"- {text}" for text in story["notes"]]] if story["notes"] else []
+    shown = "\n".join(f"![{cell(caption)}](report/{path.name})" for path, caption in pictures)
+    return "\n".join(parts + (["", shown] if shown else []))
+
+
+def checks_line(story):
+    """How many checks there were besides the targets."""
+    failed = story["failures"]
+    return f"{story['checks']} checks beside targets and remedies" + (
+        f"; **{failed} checks of the case failed**." if failed else " hold."
+    )
+
+
+def about(text):
+    """The docstring of a check as paragraphs; its first line is a sentence of its own."""
+    return "\n\n".join(" ".join(part.split()) for part in text.split("\n\n"))

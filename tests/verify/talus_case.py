@@ -99,6 +99,34 @@ class Case:
             sys.exit(f"{name}: exit code {done.returncode}, expected {code}\n{done.stderr}")
         return Result(place, name, done)
 
+    def spectrum(self, deck, replace=(), stage=None):
+        """`talus check --spectrum` of a stage (the last if not named): stable step [s], omega^2 ascending."""
+        text = (self.folder / deck).read_text()
+        for old, new in replace:
+            if old not in text:
+                sys.exit(f"{deck}: nothing to replace: {old!r}")
+            text = text.replace(old, new)
+        place = self.scratch / "spectrum"
+        place.mkdir(parents=True, exist_ok=True)
+        (place / deck).write_text(text)
+        done = subprocess.run(
+            [self.options.program, "check", deck, "--spectrum"], cwd=place, capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            sys.exit(f"{deck}: exit code {done.returncode}\n{done.stderr}")
+        step, squares, here = None, [], stage is None
+        for line in done.stdout.splitlines():
+            words = line.split()
+            if line.startswith("stage "):
+                here = stage is None or words[1] == stage
+                if here:
+                    step, squares = None, []
+            elif here and line.startswith("  stable soil step"):
+                step = float(words[3])
+            elif here and step is not None and len(words) == 2 and words[0] == str(len(squares) + 1):
+                squares.append(float(words[1]))
+        return step, np.array(squares)
+
     def check(self, what, value, limit, why):
         """A value that may not exceed its limit."""
         good = bool(np.isfinite(value)) and value <= limit

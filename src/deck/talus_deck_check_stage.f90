@@ -102,6 +102,8 @@ contains
       case ('geostatic')
         if (i > 1) call warn(store, section, 'kind', 'a geostatic stage after another one', &
             messages)
+        if (i == 1 .and. len(deck%initial%from_result) > 0) call warn(store, section, 'kind', &
+            'a geostatic stage after from_result: the saved state is relaxed anew', messages)
       case ('storm')
         if (stage%after_failure == 'dynamic_next' .and. &
             .not. any(kind_is(deck%stage(i+1:), 'dynamic'))) then
@@ -121,7 +123,8 @@ contains
                   'every trial feels the jolt of its own weight', messages)
       case ('dynamic')
         if (.not. stage%only_after_failure) return
-        can_start = .false.
+        ! Whether a storm failed before it is told by the saved state.
+        can_start = len(deck%initial%from_result) > 0
         do j = 1, i - 1
           if (deck%stage(j)%kind /= 'storm' .or. deck%stage(j)%solve == 'seepage') cycle
           if (deck%stage(j)%after_failure == 'dynamic_next') can_start = .true.
@@ -139,6 +142,7 @@ contains
     integer, intent(in) :: i !! the stage
 
     starts_weightless = deck%initial%stress == 'none' .and. &
+      len(deck%initial%from_result) == 0 .and. &
       deck_exceeds(deck%run%gravity, 0.0_dp) .and. &
       .not. any(kind_is(deck%stage(:i-1), 'geostatic'))
   end function starts_weightless

@@ -6,7 +6,7 @@ module talus_deck_check_water
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_soil_index, deck_water_index, &
     deck_moves_soil
-  use talus_deck_store, only: store_t, store_sections, store_first
+  use talus_deck_store, only: store_t, store_sections, store_first, store_value
   use talus_deck_extent, only: extent_t, extent_of
   use talus_deck_file, only: file_problem
   use talus_deck_check_soil, only: soil_list
@@ -85,6 +85,13 @@ contains
     integer :: section
 
     section = store_first(store, 'initial')
+    if (len(deck%initial%from_result) > 0) then
+      call check_restart(store, section, deck, messages)
+      return
+    end if
+    if (store%section(section)%value(store_value(store, section, 'snapshot'))%is_given) &
+      call complain(store, section, 'snapshot', 'there is no from_result', messages, &
+      'a snapshot of the file from_result')
     associate (initial => deck%initial)
       if (initial%pore_pressure == 'none') then
         if (size(deck%water) > 0) call complain(store, section, 'pore_pressure', &
@@ -102,6 +109,31 @@ contains
       call check_water_table(store, section, deck, messages)
     end associate
   end subroutine check_initial
+
+  !> A saved state has pore pressure and stress already. What is in the file is read later.
+  subroutine check_restart(store, section, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+
+    call check_file(store, section, 'from_result', deck%initial%from_result, messages)
+    if (deck%initial%pore_pressure /= 'none') call complain(store, section, 'pore_pressure', &
+      'the state of from_result has a pore pressure already', messages, &
+      '''none'' with from_result')
+    if (deck%initial%stress /= 'none') call complain(store, section, 'stress', &
+      'the state of from_result has a stress already', messages, '''none'' with from_result')
+    if (.not. is_snapshot(deck%initial%snapshot)) call complain(store, section, 'snapshot', &
+      'no name of a snapshot to start from', messages, 'a number, ''last'' or ''last_good''')
+  end subroutine check_restart
+
+  !> True for 'last', 'last_good' and numbers of up to six digits.
+  pure logical function is_snapshot(name)
+    character(*), intent(in) :: name
+
+    is_snapshot = name == 'last' .or. name == 'last_good' .or. &
+      (len(name) > 0 .and. len(name) <= 6 .and. verify(name, '0123456789') == 0)
+  end function is_snapshot
 
   subroutine check_water_table(store, section, deck, messages)
     type(store_t), intent(in) :: store

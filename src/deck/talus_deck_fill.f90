@@ -23,7 +23,7 @@ contains
     call fill_geometry(store, store_first(store, 'geometry'), deck%folder, deck%geometry)
     call fill_nodes(store, store_first(store, 'nodes'), deck%nodes)
     call fill_smoothing(store, store_first(store, 'smoothing'), deck%smoothing)
-    call fill_initial(store, store_first(store, 'initial'), deck%initial)
+    call fill_initial(store, store_first(store, 'initial'), deck%folder, deck%initial)
     call fill_output(store, store_first(store, 'output'), deck%folder, deck%output)
     call store_sections(store, 'soil', at)
     allocate (deck%soil(size(at)))
@@ -192,11 +192,14 @@ contains
     call get(store, s, 'kozeny_carman', water%kozeny_carman)
   end subroutine fill_water
 
-  subroutine fill_initial(store, s, initial)
+  subroutine fill_initial(store, s, folder, initial)
     type(store_t), intent(inout) :: store
     integer, intent(in) :: s
+    character(*), intent(in) :: folder
     type(initial_t), intent(out) :: initial
 
+    call get_path(store, s, folder, 'from_result', initial%from_result)
+    call get(store, s, 'snapshot', initial%snapshot)
     call get(store, s, 'pore_pressure', initial%pore_pressure)
     call get(store, s, 'suction', initial%suction)
     call get(store, s, 'water_table', initial%water_table)
@@ -271,6 +274,7 @@ contains
     call get(store, s, 'history_interval', output%history_interval)
     call get(store, s, 'probe_x', output%probe_x)
     call get(store, s, 'probe_y', output%probe_y)
+    call get(store, s, 'restart', output%restart)
     call get(store, s, 'xdmf', output%xdmf)
   end subroutine fill_output
 

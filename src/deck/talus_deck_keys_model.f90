@@ -99,7 +99,14 @@ contains
   subroutine keys_add_initial(t)
     type(table_t), intent(inout) :: t
 
-    call group(t, 'initial', .false., .false., 'Pore pressure and stress at the start.')
+    call group(t, 'initial', .false., .false., &
+               'Pore pressure and stress at the start, or a whole state saved by another run.')
+    call key(t, 'from_result', 'path', '', '', '', &
+             'Result file (HDF5) of a run of the same nodes: start from a state saved there, '// &
+             'with its time; hydrographs count from the start of each stage of this deck.')
+    call key(t, 'snapshot', 'string', '', 'last', '', &
+             'Which state of from_result: a number as 12 or 000012, last (of the numbered '// &
+             'ones) or last_good.')
     call key(t, 'pore_pressure', 'string', '', 'none', 'none|uniform|hydrostatic|steady', &
              'Initial pore pressure; all but none need &water.')
     call key(t, 'suction', 'real', 'Pa', '*', '[-1e9, 1e9]', &
@@ -137,6 +144,9 @@ contains
              'x of the probes; each takes the nearest node.')
     call key(t, 'probe_y', 'real_list', 'm', '', '[-1e7, 1e7]', &
              'y of the probes, as many as probe_x.')
+    call key(t, 'restart', 'string', '', 'stages', 'none|stages|all', &
+             'Which snapshots get all of the state, so that a run can start from them: none, '// &
+             'those at the ends of stages, or all; last_good has it always.')
     call key(t, 'xdmf', 'logical', '', '.true.', '', &
              'Also write an XDMF file, which ParaView opens.')
   end subroutine keys_add_output

@@ -78,6 +78,8 @@ module talus_deck_types
   end type water_t
 
   type :: initial_t
+    character(:), allocatable :: from_result   !! path that opens from the working folder, or ''
+    character(:), allocatable :: snapshot
     character(:), allocatable :: pore_pressure
     real(dp) :: suction, water_table, water_table_right, suction_limit, antecedent_rain
     character(:), allocatable :: stress
@@ -117,6 +119,7 @@ module talus_deck_types
     character(:), allocatable :: directory     !! path that opens from the working folder
     real(dp) :: snapshot_interval, history_interval
     real(dp), allocatable :: probe_x(:), probe_y(:)
+    character(:), allocatable :: restart
     logical :: xdmf
   end type output_t
 

@@ -3,7 +3,7 @@
 module talus_place
   use talus_status, only: status_t, status_set, status_deck, status_io
   use talus_deck_types, only: deck_t
-  use talus_file, only: file_exists
+  use talus_file, only: file_exists, file_same
   implicit none
   private
   public :: place_results, place_folder
@@ -23,6 +23,11 @@ contains
     place = deck%output%directory
     if (len(folder) > 0) place = folder
     base = place//'/'//deck%run%name
+    if (len(deck%initial%from_result) > 0) then
+      if (file_same(base//'.h5', deck%initial%from_result)) call status_set(status, status_deck, &
+        '&initial from_result: the results of this run would replace '//base//'.h5, from which '// &
+        'it starts; nothing was written (choose another &run name or --output DIR)')
+    end if
     if (file_exists(base//'.h5') .and. .not. overwrite) call status_set(status, status_deck, &
       base//'.h5 exists; nothing was written (allow with --overwrite, or choose --output DIR)')
   end subroutine place_results

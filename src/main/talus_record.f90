@@ -13,12 +13,14 @@ module talus_record
     audit_water_error
   use talus_relax, only: largest_motion
   use talus_history, only: history_create, history_add, history_store
+  use talus_restart, only: restart_t, restart_write
   use talus_result, only: snapshot_begin, snapshot_begin_named, snapshot_field, snapshot_end
   use talus_timer, only: timer_start, timer_stop
   use talus_progress, only: progress_show
   implicit none
   private
   public :: record_start, record_line, record_snapshot, record_named, record_last_good
+  public :: record_restart
 
   integer, parameter :: letters = 64, most_columns = 400
 
@@ -153,7 +155,40 @@ contains
     call snapshot_end(session%result, status)
     call history_store(session%history, session%result%path, status)
     call timer_stop(session%timer, 'output')
+    if (session%deck%output%restart == 'all') call record_restart(session, status)
   end subroutine record_snapshot
+
+  !> Write all of the present state, to start from, to the numbered snapshot just written.
+  subroutine record_restart(session, status)
+    type(session_t), intent(inout) :: session
+    type(status_t), intent(inout) :: status
+    character(6) :: number
+
+    if (session%result%snapshots == 0) return
+    write (number, '(i6.6)') session%result%snapshots - 1
+    call write_restart(session, number, session%state, status)
+  end subroutine record_restart
+
+  !> Write all of a state beside the snapshot of a name.
+  subroutine write_restart(session, name, state, status)
+    type(session_t), intent(inout) :: session
+    character(*), intent(in) :: name !! of the snapshot
+    type(state_t), intent(inout) :: state !! is not changed
+    type(status_t), intent(inout) :: status
+    type(restart_t) :: restart
+
+    if (status_failed(status)) return
+    call timer_start(session%timer, 'output')
+    restart%lost = session%lost
+    restart%failed = session%failed
+    restart%trigger_time = session%trigger_time
+    restart%greatest_displacement = session%greatest_displacement
+    restart%stride = session%seepage%stride
+    restart%last = session%seepage%last
+    if (allocated(session%motion%mode)) restart%mode = session%motion%mode
+    call restart_write(session%result%path, name, state, restart, status)
+    call timer_stop(session%timer, 'output')
+  end subroutine write_restart
 
   !> Write a state apart from the numbered ones, and the history so far.
   subroutine record_named(session, name, state, status)
@@ -180,6 +215,7 @@ contains
     if (.not. allocated(session%last_good%u)) return
     state = session%last_good
     call record_named(session, 'last_good', state, status)
+    call write_restart(session, 'last_good', state, status)
   end subroutine record_last_good
 
   !> All active fields of a state.

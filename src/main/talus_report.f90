@@ -3,7 +3,7 @@
 module talus_report
   use, intrinsic :: iso_fortran_env, only: compiler_version
   use omp_lib, only: omp_get_max_threads
-  use talus_kinds, only: dp
+  use talus_kinds, only: dp, i8
   use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
@@ -35,6 +35,10 @@ contains
       call summary_set(summary, 'compiler', compiler_version())
       call summary_set(summary, 'exit_code', outcome%code)
       if (status_failed(outcome)) call summary_set(summary, 'failure', outcome%message)
+      if (len(session%restart_name) > 0) then
+        call summary_set(summary, 'started_from', session%deck%initial%from_result)
+        call summary_set(summary, 'started_from_snapshot', session%restart_name)
+      end if
       call report_model(session)
       call report_cost(session)
       call report_answers(session)
@@ -77,12 +81,15 @@ contains
     type(session_t), intent(inout) :: session
     character(:), allocatable :: names(:)
     real(dp) :: wall, soil
+    integer(i8) :: steps
     integer :: i
 
     associate (summary => session%summary, state => session%state)
       call summary_set(summary, 'threads', omp_get_max_threads())
-      call summary_set(summary, 'steps', state%steps)
-      call summary_set(summary, 'seepage_steps', state%seepage_steps)
+      steps = state%steps - session%steps_before
+      call summary_set(summary, 'steps', steps)
+      call summary_set(summary, 'seepage_steps', &
+                       state%seepage_steps - session%seepage_steps_before)
       wall = timer_seconds(session%timer, 'set_up') + timer_seconds(session%timer, 'stages')
       call summary_set(summary, 'wall_seconds', wall)
       names = timer_names(session%timer)
@@ -93,7 +100,7 @@ contains
       soil = timer_seconds(session%timer, 'soil') + timer_seconds(session%timer, 'geostatic') &
         + timer_seconds(session%timer, 'strength_reduction')
       if (soil > 0.0_dp) call summary_set(summary, 'node_steps_per_second', &
-        real(session%disc%n, dp)*real(state%steps, dp)/soil)
+        real(session%disc%n, dp)*real(steps, dp)/soil)
       call summary_set(summary, 'peak_memory_bytes', memory_held('VmHWM:'))
     end associate
   end subroutine report_cost

@@ -16,6 +16,7 @@ module talus_run
   use talus_conditions, only: inlets_t
   use talus_setup_conditions, only: setup_conditions, setup_steady
   use talus_steady, only: steady_solve
+  use talus_setup_restart, only: setup_restart
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
     result_write_mesh
   use talus_history, only: history_store, history_close
@@ -40,6 +41,7 @@ contains
     call timer_start(session%timer, 'set_up')
     session%deck = deck
     session%declared = ''
+    session%restart_name = ''
     session%soil_moves = .false.
     do i = 1, size(deck%stage)
       session%soil_moves = session%soil_moves .or. deck%stage(i)%solve /= 'seepage'
@@ -60,7 +62,11 @@ contains
       call setup_conditions(deck, session%disc, deck%stage(i)%name, session%conditions, status)
       if (status_failed(status)) return
     end do
-    call start_state(session, status)
+    if (len(deck%initial%from_result) > 0) then
+      call setup_restart(session, status)
+    else
+      call start_state(session, status)
+    end if
     call timer_stop(session%timer, 'set_up_start')
     call timer_stop(session%timer, 'set_up')
   end subroutine run_prepare

@@ -40,6 +40,8 @@ module talus_session
     type(work_t) :: work
     type(motion_t) :: motion                !! of the present stage
     type(seepage_t) :: seepage
+    character(:), allocatable :: restart_name !! snapshot that the run started from; '' for none
+    integer(i8) :: steps_before = 0_i8, seepage_steps_before = 0_i8 !! of the runs before
     integer, allocatable :: probe(:)        !! node of each probe
     integer :: stage = 0                    !! number of the present stage
     real(dp) :: stage_start = 0.0_dp        !! time at which it began [s]

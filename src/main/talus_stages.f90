@@ -22,7 +22,7 @@ module talus_stages
     energies_t
   use talus_soil_law, only: soil_inverted
   use talus_strength_reduction, only: strength_reduction
-  use talus_record, only: record_line, record_snapshot, record_last_good
+  use talus_record, only: record_line, record_snapshot, record_restart, record_last_good
   use talus_progress, only: progress_start, progress_end, progress_say
   use talus_timer, only: timer_start, timer_stop
   implicit none
@@ -69,6 +69,7 @@ contains
       end select
       call timer_stop(session%timer, stage%kind)
       if (.not. status_failed(status) .and. stage%reset_displacement) call reset(session)
+      if (session%deck%output%restart /= 'none') call record_restart(session, status)
       call progress_end(session%progress)
     end associate
   end subroutine stage_run
@@ -92,12 +93,9 @@ contains
         session%motion%viscous = 0.0_dp
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
         call take_load(session)
-        state%v = 0.0_dp
-        if (stage%kind == 'dynamic') state%v = merge(session%conditions%given, 0.0_dp, &
-                                                     session%conditions%held)
-        state%acceleration = 0.0_dp
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
+        call start_motion(session, stage)
         session%energies_start = audit_energies(disc, session%ground, session%motion, state)
         session%declared = session%declared//stage%name//': mass scaling '// &
           trim(merge('on ', 'off', stage%mass_scaling))//', local damping '// &
@@ -106,7 +104,30 @@ contains
       if (stage%solve /= 'soil') call seepage_shape(session%seepage, disc, session%ground, &
                                                     session%conditions%inlets, state)
     end associate
+    session%last_good = session%state
   end subroutine stage_begin
+
+  !> Velocities at the start of a stage: real motion goes on from one dynamic stage to the next, all
+  !> else starts at rest; prescribed velocities hold at once.
+  subroutine start_motion(session, stage)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp) :: before
+
+    associate (state => session%state, conditions => session%conditions)
+      before = state%ahead
+      state%ahead = 0.0_dp
+      if (stage%kind == 'dynamic') state%ahead = 0.5_dp*session%motion%step
+      if (before > 0.0_dp .and. stage%kind == 'dynamic') then
+        ! The velocity is half a step ahead, of the new step from now on.
+        state%v = state%v + (state%ahead - before)*state%acceleration
+      else
+        state%v = 0.0_dp
+        state%acceleration = 0.0_dp
+      end if
+      if (stage%kind == 'dynamic') state%v = merge(conditions%given, state%v, conditions%held)
+    end associate
+  end subroutine start_motion
 
   !> Weight of soil and water now, and tractions.
   subroutine take_load(session)
@@ -177,6 +198,7 @@ contains
     associate (state => session%state)
       state%u_zero = state%u
       state%v = 0.0_dp
+      state%ahead = 0.0_dp
       if (allocated(state%strain)) state%strain = 0.0_dp
       if (allocated(state%history)) state%history = 0.0_dp
     end associate

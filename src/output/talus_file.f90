@@ -2,11 +2,14 @@
 !> Text files that are always whole: a new version is written beside the old one and renamed
 !> over it in one step, so that a run killed at any moment leaves the old or the new version.
 module talus_file
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_loc, c_null_char, c_ptr
   use talus_status, only: status_t, status_set, status_failed, status_io
   implicit none
   private
-  public :: file_exists, file_replace, file_base_name, file_delete
+  public :: file_exists, file_same, file_replace, file_base_name, file_delete
+
+  !> Letters that POSIX allows a path (PATH_MAX), and the end.
+  integer, parameter :: path_letters = 4097
 
   interface
     !> POSIX rename: replaces `new` in one step.
@@ -14,6 +17,13 @@ module talus_file
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: old(*), new(*)
     end function c_rename
+
+    !> POSIX realpath: the path without links and dots, or a null pointer.
+    type(c_ptr) function c_realpath(path, resolved) bind(c, name='realpath')
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+      type(c_ptr), value :: resolved
+    end function c_realpath
   end interface
 
 contains
@@ -24,6 +34,19 @@ contains
 
     inquire (file=path, exist=file_exists)
   end function file_exists
+
+  !> True when two names mean the same file, which exists.
+  logical function file_same(one, other)
+    character(*), intent(in) :: one, other !! file names
+    character(kind=c_char), target :: path(path_letters, 2)
+    type(c_ptr) :: found(2)
+
+    path = c_null_char
+    found(1) = c_realpath(one//c_null_char, c_loc(path(:, 1)))
+    found(2) = c_realpath(other//c_null_char, c_loc(path(:, 2)))
+    file_same = c_associated(found(1)) .and. c_associated(found(2)) &
+      .and. all(path(:, 1) == path(:, 2))
+  end function file_same
 
   !> Name without its folders: 'out/slope.h5' is 'slope.h5'.
   pure function file_base_name(path) result(name)

@@ -9,11 +9,12 @@ module talus_h5
     h5s_scalar_f, h5t_native_double, h5t_native_integer, h5p_link_create_f
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
-  use talus_h5_file, only: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_group_begin, &
-    h5_group_end, h5_fail, h5_letters, h5_text_type
+  use talus_h5_file, only: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_names, &
+    h5_delete, h5_name_letters, h5_group_begin, h5_group_end, h5_fail, h5_letters, h5_text_type
   implicit none
   private
-  public :: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_group_begin, h5_group_end
+  public :: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_names, h5_name_letters
+  public :: h5_delete, h5_group_begin, h5_group_end
   public :: h5_write, h5_attribute
 
   !> Write a dataset: text; reals (n), (m,n); integers (n), (m,n); a list of names.

@@ -5,13 +5,18 @@ module talus_h5_file
   use hdf5, only: hid_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
     h5fflush_f, h5gcreate_anon_f, h5gclose_f, h5olink_f, h5tcopy_f, h5tset_size_f, &
     h5tset_cset_f, h5tset_strpad_f, h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, &
-    h5lexists_f, h5f_acc_trunc_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_scope_global_f, &
+    h5lexists_f, h5ldelete_f, h5gn_members_f, h5gget_obj_info_idx_f, h5f_acc_trunc_f, &
+    h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_scope_global_f, &
     h5t_native_double, h5t_fortran_s1, h5t_cset_utf8_f, h5t_str_nullpad_f, h5p_link_create_f
   use talus_status, only: status_t, status_set, status_failed, status_io
   implicit none
   private
-  public :: h5_create, h5_open, h5_close, h5_exists, h5_group_begin, h5_group_end
+  public :: h5_create, h5_open, h5_close, h5_exists, h5_names, h5_delete, h5_group_begin
+  public :: h5_group_end
   public :: h5_fail, h5_letters, h5_text_type
+
+  !> Longest name of an object that h5_names tells.
+  integer, parameter, public :: h5_name_letters = 64
 
   !> An open HDF5 file.
   type, public :: h5_file_t
@@ -124,6 +129,34 @@ contains
     call h5lexists_f(file%here, name, h5_exists, ierr)
     if (ierr /= 0) h5_exists = .false.
   end function h5_exists
+
+  !> Names of the objects of a group, in the order of letters; none when there is no such group.
+  subroutine h5_names(file, group, names)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: group !! path
+    character(h5_name_letters), allocatable, intent(out) :: names(:)
+    integer :: i, n, kind_of, ierr
+
+    n = 0
+    if (h5_exists(file, group)) call h5gn_members_f(file%id, group, n, ierr)
+    allocate (names(max(0, n)))
+    do i = 1, size(names)
+      call h5gget_obj_info_idx_f(file%id, group, i - 1, names(i), kind_of, ierr)
+    end do
+  end subroutine h5_names
+
+  !> Take an object out of the file; nothing happens when there is none.
+  subroutine h5_delete(file, name, status)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name !! path of the object; its parent groups need not exist
+    type(status_t), intent(inout) :: status
+    integer :: ierr
+
+    if (status_failed(status)) return
+    if (.not. h5_exists(file, name)) return
+    call h5ldelete_f(file%id, name, ierr)
+    if (ierr /= 0) call h5_fail(file, name, 'could not be deleted', status)
+  end subroutine h5_delete
 
   !> Start a group that nobody can see before h5_group_end: names without a leading / go into it.
   subroutine h5_group_begin(file, status)

@@ -28,6 +28,7 @@ module talus_state
     real(dp), allocatable :: u(:,:)             !! displacement from the reference [m], (2,n)
     real(dp), allocatable :: u_zero(:,:)        !! displacement that counts as none [m], (2,n)
     real(dp), allocatable :: v(:,:)             !! velocity, half a step ahead [m/s], (2,n)
+    real(dp) :: ahead = 0.0_dp                  !! that half step in real time [s]; 0 in relaxation
     real(dp), allocatable :: acceleration(:,:)  !! [m/s2], (2,n)
     real(dp), allocatable :: f(:,:)             !! deformation gradient 11, 12, 21, 22, (4,n)
     real(dp), allocatable :: f_drive(:,:)       !! smoothed, when it drives damage alone, (4,n)

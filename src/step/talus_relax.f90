@@ -108,6 +108,7 @@ contains
     before = motion%step
     call motion_refresh(disc, ground, state, motion, work)
     state%v = state%v + 0.5_dp*(motion%step - before)*state%acceleration
+    if (state%ahead > 0.0_dp) state%ahead = 0.5_dp*motion%step
   end subroutine motion_shorten
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has

@@ -6,7 +6,7 @@ module talus_deck_check_water
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_soil_index, deck_water_index, &
     deck_moves_soil
-  use talus_deck_store, only: store_t, store_sections, store_first, store_value
+  use talus_deck_store, only: store_t, store_sections, store_first
   use talus_deck_extent, only: extent_t, extent_of
   use talus_deck_file, only: file_problem
   use talus_deck_check_soil, only: soil_list
@@ -89,7 +89,7 @@ contains
       call check_restart(store, section, deck, messages)
       return
     end if
-    if (store%section(section)%value(store_value(store, section, 'snapshot'))%is_given) &
+    if (len(deck%initial%snapshot) > 0) &
       call complain(store, section, 'snapshot', 'there is no from_result', messages, &
       'a snapshot of the file from_result')
     associate (initial => deck%initial)
@@ -127,11 +127,11 @@ contains
       'no name of a snapshot to start from', messages, 'a number, ''last'' or ''last_good''')
   end subroutine check_restart
 
-  !> True for 'last', 'last_good' and numbers of up to six digits.
+  !> True for none, 'last', 'last_good' and numbers of up to six digits.
   pure logical function is_snapshot(name)
     character(*), intent(in) :: name
 
-    is_snapshot = name == 'last' .or. name == 'last_good' .or. &
+    is_snapshot = name == '' .or. name == 'last' .or. name == 'last_good' .or. &
       (len(name) > 0 .and. len(name) <= 6 .and. verify(name, '0123456789') == 0)
   end function is_snapshot
 

@@ -104,9 +104,9 @@ contains
     call key(t, 'from_result', 'path', '', '', '', &
              'Result file (HDF5) of a run of the same nodes: start from a state saved there, '// &
              'with its time; hydrographs count from the start of each stage of this deck.')
-    call key(t, 'snapshot', 'string', '', 'last', '', &
+    call key(t, 'snapshot', 'string', '', '', '', &
              'Which state of from_result: a number as 12 or 000012, last (of the numbered '// &
-             'ones) or last_good.')
+             'ones) or last_good; absent: last.')
     call key(t, 'pore_pressure', 'string', '', 'none', 'none|uniform|hydrostatic|steady', &
              'Initial pore pressure; all but none need &water.')
     call key(t, 'suction', 'real', 'Pa', '*', '[-1e9, 1e9]', &

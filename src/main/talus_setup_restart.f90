@@ -127,7 +127,7 @@ contains
   !> Name of the snapshot that is asked for, among those of which all of the state is there.
   subroutine find_snapshot(file, wanted, name, problems)
     type(h5_file_t), intent(in) :: file
-    character(*), intent(in) :: wanted !! a number, last or last_good
+    character(*), intent(in) :: wanted !! a number, last, last_good, or '' for last
     character(:), allocatable, intent(out) :: name
     type(problems_t), intent(inout) :: problems
     character(h5_name_letters), allocatable :: complete(:), all_names(:)
@@ -137,7 +137,7 @@ contains
     call h5_names(file, '/restart', complete)
     call h5_names(file, '/snapshots', all_names)
     name = wanted
-    if (wanted == 'last') then
+    if (wanted == '' .or. wanted == 'last') then
       do i = 1, size(complete)
         if (is_number(trim(complete(i)))) name = trim(complete(i))
       end do
@@ -147,7 +147,7 @@ contains
       name = digits
     end if
     if (any(complete == name)) return
-    if (any(all_names == name) .or. wanted == 'last') then
+    if (any(all_names == name) .or. wanted == '' .or. wanted == 'last') then
       call add_problem(problems, 'snapshot = '''//wanted//'''', 'not all of the state was saved', &
         list(complete)//'; the earlier run saves more with &output restart = ''all''')
     else

@@ -17,6 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 from talus_style import GREY, LINES, use_style  # noqa: E402
 
 MARKERS = "osD^vP*"
+ROUND_OFF = 1e-8  # what is smaller has no order
 SIZE = (4.4, 3.0)  # inches
 
 
@@ -62,10 +63,11 @@ def log_axis(axis, values):
 
 
 def draw_points(axes, curves, x):
-    """Log-log curves of rows with error > 0: {label: (rows, style)}."""
+    """Log-log curves of rows with error > 0, from coarse to fine: {label: (rows, style)}."""
     shown = []
     for label, (rows, style) in curves.items():
-        rows = sorted((r for r in rows if r["error"] > 0 and r[x] > 0), key=lambda r: r[x])
+        rows = [r for r in rows if r["error"] > 0 and r[x] > 0]
+        rows.sort(key=lambda r: -r.get("spacing", r["error"]))
         if rows:
             axes.plot([r[x] for r in rows], [r["error"] for r in rows], label=label, **style)
             shown += rows
@@ -121,7 +123,7 @@ def draw_convergence(story, folder):
     shown = draw_points(axes, ours, "spacing")
     first = sorted((r["spacing"], r["error"]) for r in next(iter(series_of(story["runs"]).values())))
     spacing, error = first[len(first) // 2]
-    if shown and error > 0:
+    if error > ROUND_OFF:
         ends = np.array([min(r["spacing"] for r in shown), max(r["spacing"] for r in shown)])
         for order, dash in ((1, ":"), (2, "--")):
             line = error * (ends / spacing) ** order
@@ -142,6 +144,10 @@ def draw_curves(story, picture, folder):
         axes.set_xscale("log")
     if picture["log_y"]:
         axes.set_yscale("log")
+    if picture.get("down"):
+        axes.invert_yaxis()
+    if picture.get("equal"):
+        axes.set_aspect("equal")
     axes.set_xlabel(picture["x_label"])
     axes.set_ylabel(picture["y_label"])
     axes.grid(True)

@@ -63,7 +63,8 @@ def anchor(story):
 
 def heading(story):
     words = story["title"] or story["case"].replace("_", " ")
-    return f"{story['id']}: {words}" if story["id"] else words[:1].upper() + words[1:]
+    numbered = re.search(r"\d", story["id"])
+    return f"{story['id']}: {words}" if numbered else words[:1].upper() + words[1:]
 
 
 def link(story):

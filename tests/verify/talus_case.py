@@ -218,8 +218,11 @@ class Case:
         )
         print(f"{'ok  ' if shown else 'FAIL'} {what}: without {without}; with {remedied}")
 
-    def picture(self, name, x_label, y_label, curves, log_x=False, log_y=False):
-        """A line picture of the report. `curves`: name -> (x, y) or (x, y, matplotlib format)."""
+    def picture(self, name, x_label, y_label, curves, log_x=False, log_y=False, **more):
+        """A line picture of the report. `curves`: name -> (x, y) or (x, y, matplotlib format).
+
+        `down=True` lets y grow downwards, as a depth; `equal=True` draws x and y at one scale.
+        """
         self.story["pictures"].append(
             {
                 "name": name,
@@ -227,6 +230,7 @@ class Case:
                 "y_label": y_label,
                 "log_x": log_x,
                 "log_y": log_y,
+                **more,
                 "curves": [
                     {
                         "name": title,

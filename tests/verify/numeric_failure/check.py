@@ -17,7 +17,13 @@ import numpy as np
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from talus_case import Case  # noqa: E402
 
-case = Case(__file__.rsplit("/", 1)[0])
+case = Case(
+    __file__.rsplit("/", 1)[0],
+    id="numeric failure",
+    title="a run whose numbers fail ends in order",
+    error="none",
+    reference="README: exit codes 0 done, 1 files, 2 input, 3 numerics",
+)
 result = case.run("crush.nml", code=3)
 message = result.done.stderr
 print("     " + message.strip())
@@ -49,6 +55,13 @@ def digest():
     return [hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(result.place.iterdir())]
 
 
+history = result.history()
+case.picture(
+    "A block crushed until it turns inside out",
+    "Time [s]",
+    "Largest displacement [m]",
+    {"until the last good state": (history["time"], history["maximum_displacement"], "C0.-")},
+)
 before = digest()
 done = talus("run", "crush.nml", "--output", ".")
 case.check_true(

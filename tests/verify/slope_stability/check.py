@@ -12,10 +12,18 @@ stand ends the geostatic stage, and the run, with exit code 3; in a storm the ru
 import math
 import sys
 
+import numpy as np
+
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from talus_case import Case  # noqa: E402
 
-case = Case(__file__.rsplit("/", 1)[0])
+case = Case(
+    __file__.rsplit("/", 1)[0],
+    id="S1 bracket",
+    title="which slopes of Griffiths & Lane (1999) example 1 stand, and which fall",
+    error="none",
+    reference="Bishop & Morgenstern's charts: 1.380; finite elements of Griffiths & Lane: in (1.35, 1.40]",
+)
 TWO = "levels = 2\n  length = 1.4"
 
 
@@ -39,13 +47,29 @@ def run(ratio, factor, levels, stands):
             "no equilibrium within steps_max" in result.done.stderr
             and "does not stand" in result.done.stderr,
         )
+    history = result.history()
+    gravity = history["stage"] == "gravity"
+    return history["maximum_displacement"][gravity].max()
 
 
-for levels in ("levels = 1", TWO):
-    run(0.05, 1.0, levels, True)
-    run(0.05, 1.35, levels, True)
-    run(0.05, 1.40, levels, False)
+curves = {}
+for name, levels, mark in (("one level", "levels = 1", "C0o-"), ("two levels", TWO, "C1s-")):
+    factors = (1.0, 1.2, 1.3, 1.35, 1.40, 1.45) if case.full else (1.0, 1.35, 1.40)
+    moved = [run(0.05, factor, levels, factor < 1.38) for factor in factors]
+    curves[name] = (factors, np.array(moved) * 1e8 / (20e3 * 10.0**2), mark)
+    case.target(
+        f"displacement at 1.35 over that at 1.40, {name}",
+        moved[factors.index(1.35)] / moved[factors.index(1.40)],
+        0.8,
+        "it runs away between 1.35 and 1.40",
+    )
 run(0.02, 1.0, "levels = 1", True)
 run(0.02, 1.10, "levels = 1", False)
 run(0.01, 1.0, "levels = 1", False)
+case.picture(
+    "Displacement under gravity; what does not stand was stopped",
+    "Factor that divides the strength [-]",
+    "Largest displacement, E u/(gamma H²) [-]",
+    curves,
+)
 sys.exit(case.verdict())

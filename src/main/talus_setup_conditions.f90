@@ -8,8 +8,8 @@ module talus_setup_conditions
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
-    conditions_deform, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, inlet_none, inlet_head, &
-    inlet_flux, inlet_rain, inlet_seepage
+    conditions_deform, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, &
+    inlet_none, inlet_head, inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_t, rain_constant, rain_read
   use talus_steady, only: steady_heads
   implicit none

@@ -8,8 +8,8 @@ module talus_homogeneous_motion
 
 contains
 
-  !> Where a constant velocity gradient L takes distances from its centre: exp(L time), by the closed
-  !> form for 2 x 2 matrices (src/THEORY.md (2.5)). A spin gives an exact rotation.
+  !> Where a constant velocity gradient L takes distances from its centre: exp(L time), by the
+  !> closed form for 2 x 2 matrices (src/THEORY.md (2.5)). A spin gives an exact rotation.
   pure function motion_map(gradient, time) result(map)
     real(dp), intent(in) :: gradient(4) !! L xx, xy, yx, yy [1/s]
     real(dp), intent(in) :: time        !! [s]

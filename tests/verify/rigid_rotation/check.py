@@ -6,8 +6,8 @@ turned by 90 degrees about a point outside the block: in one step, and in 1000 s
 Hughes & Winget (1980) turns stress exactly, so only round-off is left: that of positions (1e-16 of 2 m)
 over the spacing (0.05 m) is 5e-15 of strain from each neighbour, and stress over modulus is 1/75 here.
 Hence one limit of 1e-11 for stress, 1e-12 for strain and plastic strain, of which there must be none.
-The picture has beside it
-what the same turn costs with the Jaumann rate taken at the start of each step, evaluated here.
+The picture has beside it what the same turn costs with the Jaumann rate taken at the start of each
+step, evaluated here.
 """
 
 import sys

@@ -8,7 +8,8 @@ module talus_drucker_prager
   use talus_kinds, only: dp
   implicit none
   private
-  public :: cone_t, cone_shape, cone_set, drucker_prager_return, secant_shear_ratio
+  public :: cone_t, cone_shape, cone_set, drucker_prager_return, drucker_prager_within
+  public :: secant_shear_ratio
 
   !> Fits of the cone to the Mohr-Coulomb pyramid.
   integer, parameter, public :: fit_plane_strain = 1, fit_compression = 2, fit_extension = 3
@@ -114,6 +115,26 @@ contains
     stress(3) = ratio*sz + mean
     stress(4) = ratio*stress(4)
   end subroutine drucker_prager_return
+
+  !> Which of n trial stresses lie inside a cone: 1, or 0 where outside or not a number.
+  pure subroutine drucker_prager_within(n, cone, stress, within)
+    integer, intent(in) :: n
+    type(cone_t), intent(in) :: cone
+    real(dp), intent(in) :: stress(4,n) !! trial stress [Pa], tension +
+    real(dp), intent(out) :: within(n)  !! 1 or 0
+    real(dp) :: i1, mean, j2, radius
+    integer :: i
+
+    do i = 1, n
+      i1 = stress(1, i) + stress(2, i) + stress(3, i)
+      mean = i1*third
+      j2 = 0.5_dp*((stress(1, i) - mean)**2 + (stress(2, i) - mean)**2 &
+        + (stress(3, i) - mean)**2) + stress(4, i)*stress(4, i)
+      radius = cone%k - cone%alpha*i1
+      within(i) = merge(1.0_dp, 0.0_dp, i1 <= cone%i1_max)*merge(1.0_dp, 0.0_dp, radius >= 0.0_dp) &
+        *merge(1.0_dp, 0.0_dp, j2 <= radius*radius)
+    end do
+  end subroutine drucker_prager_within
 
   !> Secant shear stiffness of the plastic state over the elastic one,
   !! sqrt(J2)/(sqrt(J2) + G gamma_p), with gamma_p = sqrt(3) times the equivalent plastic strain,

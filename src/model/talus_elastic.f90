@@ -7,7 +7,8 @@ module talus_elastic
   use talus_objective, only: piola_stress
   implicit none
   private
-  public :: elastic_t, elastic_prepare, elastic_add, elastic_energy, elastic_bilinear
+  public :: elastic_t, elastic_prepare, elastic_add, elastic_adds, elastic_energy, elastic_energies
+  public :: elastic_bilinear
   public :: elastic_piola_tangent
 
   type :: elastic_t
@@ -57,6 +58,21 @@ contains
     stress(4) = stress(4) + two_g*dstrain(4)
   end subroutine elastic_add
 
+  !> The same at n points, from the stress before to the stress after.
+  pure subroutine elastic_adds(elastic, n, dstrain, before, stress)
+    type(elastic_t), intent(in) :: elastic
+    integer, intent(in) :: n
+    real(dp), intent(in) :: dstrain(4,n) !! strain increment [-], tension +
+    real(dp), intent(in) :: before(4,n)  !! stress [Pa], tension +
+    real(dp), intent(out) :: stress(4,n) !! before + C : dstrain [Pa]
+    integer :: i
+
+    do i = 1, n
+      stress(:, i) = before(:, i)
+      call elastic_add(elastic, dstrain(:, i), stress(:, i))
+    end do
+  end subroutine elastic_adds
+
   !> Elastic energy density a : C^-1 : b of two stresses, without the half.
   pure real(dp) function elastic_bilinear(elastic, a, b)
     type(elastic_t), intent(in) :: elastic
@@ -79,6 +95,19 @@ contains
 
     elastic_energy = 0.5_dp*elastic_bilinear(elastic, stress, stress)
   end function elastic_energy
+
+  !> The same at n points.
+  pure subroutine elastic_energies(elastic, n, stress, energy)
+    type(elastic_t), intent(in) :: elastic
+    integer, intent(in) :: n
+    real(dp), intent(in) :: stress(4,n) !! stress [Pa]
+    real(dp), intent(out) :: energy(n)  !! [J/m3]
+    integer :: i
+
+    do i = 1, n
+      energy(i) = elastic_energy(elastic, stress(:, i))
+    end do
+  end subroutine elastic_energies
 
   !> Elastic tangent for the stable step: dP = J dsigma F^-T of a change dF at F, with
   !! dsigma = C : sym(dF F^-1) + K_w tr(dF F^-1) 1. The geometric terms, of the order of

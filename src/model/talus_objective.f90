@@ -4,11 +4,13 @@
 !! Deformation gradients are stored (11,12,21,22) with F_ij = dx_i/dX_j; symmetric tensors are
 !! stored (xx,yy,zz,xy) with tensorial shear. A rotation is stored as (cos, sin) of
 !! Q = [cos -sin; sin cos]. Equations: src/THEORY.md (3.1), (3.2); Hughes & Winget (1980).
+!! The plural procedures take many points: loops without branches, which compilers vectorise.
 module talus_objective
   use talus_kinds, only: dp
   implicit none
   private
-  public :: objective_increment, tensor_rotate, strain_advance, piola_stress
+  public :: objective_increment, objective_increments, tensor_rotate, tensors_rotate
+  public :: strain_advance, piola_stress, piola_stresses
 
 contains
 
@@ -22,38 +24,59 @@ contains
     real(dp), intent(out) :: rotation(2)  !! cosine and sine of the rotation of the step [-]
     real(dp), intent(out) :: det_new      !! det F_new [-]
     integer, intent(out) :: ierr          !! 0, or 1 when det F_mid or det F_new is not positive
-    real(dp) :: m11, m12, m21, m22, d11, d12, d21, d22, det_mid, inv, h12, h21, a, a2
+    real(dp) :: det_mid(1), det_old(1), det(1)
 
-    m11 = 0.5_dp*(f_old(1) + f_new(1))
-    m12 = 0.5_dp*(f_old(2) + f_new(2))
-    m21 = 0.5_dp*(f_old(3) + f_new(3))
-    m22 = 0.5_dp*(f_old(4) + f_new(4))
-    det_mid = m11*m22 - m12*m21
-    det_new = f_new(1)*f_new(4) - f_new(2)*f_new(3)
-    if (.not. (det_mid > 0.0_dp .and. det_new > 0.0_dp)) then
-      ierr = 1
-      dstrain = 0.0_dp
-      rotation = [1.0_dp, 0.0_dp]
-      return
-    end if
-    ierr = 0
-    d11 = f_new(1) - f_old(1)
-    d12 = f_new(2) - f_old(2)
-    d21 = f_new(3) - f_old(3)
-    d22 = f_new(4) - f_old(4)
-    inv = 1.0_dp/det_mid
-    h12 = (d12*m11 - d11*m12)*inv
-    h21 = (d21*m22 - d22*m21)*inv
-    dstrain(1) = (d11*m22 - d12*m21)*inv
-    dstrain(2) = (d22*m11 - d21*m12)*inv
-    dstrain(3) = 0.0_dp
-    dstrain(4) = 0.5_dp*(h12 + h21)
-    a = 0.25_dp*(h21 - h12)
-    a2 = a*a
-    inv = 1.0_dp/(1.0_dp + a2)
-    rotation(1) = (1.0_dp - a2)*inv
-    rotation(2) = 2.0_dp*a*inv
+    call objective_increments(1, f_old, f_new, dstrain, rotation, det_mid, det_old, det)
+    det_new = det(1)
+    ierr = merge(0, 1, det_mid(1) > 0.0_dp)
   end subroutine objective_increment
+
+  !> The same at n points. Where det F_mid or det F_new is not positive, det_mid is returned as
+  !! zero, with no strain and no rotation.
+  pure subroutine objective_increments(n, f_old, f_new, dstrain, rotation, det_mid, det_old, &
+    det_new)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: f_old(4,n)      !! deformation gradient before the step [-]
+    real(dp), intent(in) :: f_new(4,n)      !! deformation gradient after the step [-]
+    real(dp), intent(out) :: dstrain(4,n)   !! strain increment [-], tension +, zz = 0
+    real(dp), intent(out) :: rotation(2,n)  !! cosine and sine of the rotation of the step [-]
+    real(dp), intent(out) :: det_mid(n)     !! det F_mid [-], or 0
+    real(dp), intent(out) :: det_old(n)     !! det F_old [-]
+    real(dp), intent(out) :: det_new(n)     !! det F_new [-]
+    real(dp) :: m11, m12, m21, m22, d11, d12, d21, d22, inv, h12, h21, a, a2
+    integer :: i
+
+    do i = 1, n
+      det_old(i) = f_old(1, i)*f_old(4, i) - f_old(2, i)*f_old(3, i)
+      det_new(i) = f_new(1, i)*f_new(4, i) - f_new(2, i)*f_new(3, i)
+      det_mid(i) = 0.25_dp*((f_old(1, i) + f_new(1, i))*(f_old(4, i) + f_new(4, i)) &
+        - (f_old(2, i) + f_new(2, i))*(f_old(3, i) + f_new(3, i)))
+      det_mid(i) = merge(det_mid(i), 0.0_dp, min(det_mid(i), det_new(i)) > 0.0_dp)
+    end do
+    do i = 1, n
+      m11 = 0.5_dp*(f_old(1, i) + f_new(1, i))
+      m12 = 0.5_dp*(f_old(2, i) + f_new(2, i))
+      m21 = 0.5_dp*(f_old(3, i) + f_new(3, i))
+      m22 = 0.5_dp*(f_old(4, i) + f_new(4, i))
+      d11 = f_new(1, i) - f_old(1, i)
+      d12 = f_new(2, i) - f_old(2, i)
+      d21 = f_new(3, i) - f_old(3, i)
+      d22 = f_new(4, i) - f_old(4, i)
+      ! One over det_mid, or 0 where that is 0, without a branch.
+      inv = det_mid(i)/max(det_mid(i)*det_mid(i), tiny(1.0_dp))
+      h12 = (d12*m11 - d11*m12)*inv
+      h21 = (d21*m22 - d22*m21)*inv
+      dstrain(1, i) = (d11*m22 - d12*m21)*inv
+      dstrain(2, i) = (d22*m11 - d21*m12)*inv
+      dstrain(3, i) = 0.0_dp
+      dstrain(4, i) = 0.5_dp*(h12 + h21)
+      a = 0.25_dp*(h21 - h12)
+      a2 = a*a
+      inv = 1.0_dp/(1.0_dp + a2)
+      rotation(1, i) = (1.0_dp - a2)*inv
+      rotation(2, i) = 2.0_dp*a*inv
+    end do
+  end subroutine objective_increments
 
   !> Rotate a symmetric tensor: t becomes Q t Q^T.
   pure subroutine tensor_rotate(rotation, t)
@@ -71,6 +94,18 @@ contains
     t(2) = ss*xx + 2.0_dp*cs*xy + cc*yy
     t(4) = cs*(xx - yy) + (cc - ss)*xy
   end subroutine tensor_rotate
+
+  !> The same at n points.
+  pure subroutine tensors_rotate(n, rotation, t)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: rotation(2,n) !! cosine and sine [-]
+    real(dp), intent(inout) :: t(4,n)     !! symmetric tensors, xx, yy, zz, xy
+    integer :: i
+
+    do i = 1, n
+      call tensor_rotate(rotation(:, i), t(:, i))
+    end do
+  end subroutine tensors_rotate
 
   !> Advance an objectively integrated strain: strain becomes Q strain Q^T + dstrain. Serves the
   !! strain that drives damage when it comes from a smoothed deformation gradient of its own.
@@ -98,4 +133,20 @@ contains
     piola(3) = stress(4)*f(4) - stress(2)*f(2)
     piola(4) = stress(2)*f(1) - stress(4)*f(3)
   end subroutine piola_stress
+
+  !> Area times first Piola-Kirchhoff stress at n points.
+  pure subroutine piola_stresses(n, area, f, stress, piola)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: area(n)     !! area of the point's cell [m2]
+    real(dp), intent(in) :: f(4,n)      !! deformation gradient [-]
+    real(dp), intent(in) :: stress(4,n) !! Cauchy stress [Pa], tension +
+    real(dp), intent(out) :: piola(4,n) !! area times first Piola stress [N m/m]
+    real(dp) :: p(4)
+    integer :: i
+
+    do i = 1, n
+      call piola_stress(f(:, i), stress(:, i), p)
+      piola(:, i) = area(i)*p
+    end do
+  end subroutine piola_stresses
 end module talus_objective

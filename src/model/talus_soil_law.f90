@@ -10,11 +10,12 @@ module talus_soil_law
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
-  use talus_objective, only: objective_increment, tensor_rotate
-  use talus_elastic, only: elastic_t, elastic_prepare, elastic_add, elastic_energy, &
-    elastic_bilinear
+  use talus_objective, only: objective_increments, tensors_rotate
+  use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energy, &
+    elastic_energies, elastic_bilinear
   use talus_drucker_prager, only: cone_t, drucker_prager_return, secant_shear_ratio
-  use talus_strength, only: strength_t, strength_prepare, strength_cone, suction_strength_none
+  use talus_strength, only: strength_t, strength_prepare, strength_cone, strength_within, &
+    suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
   use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_part, &
@@ -22,7 +23,8 @@ module talus_soil_law
     split_deviatoric
   implicit none
   private
-  public :: soil_law_t, soil_law_prepare, soil_update, soil_stored_energy
+  public :: soil_law_t, soil_law_prepare, soil_update, soil_trial, soil_stays_elastic, soil_return
+  public :: soil_stored_energy, soil_stored_energies
   public :: bishop_factor, bishop_subtract, soil_needs_strain
 
   integer, parameter, public :: plasticity_none = 0, plasticity_drucker_prager = 1
@@ -37,6 +39,9 @@ module talus_soil_law
   integer, parameter, public :: history_damage_work = 5  !! [J/m3]
   !> All of them, and those that soil without damage needs.
   integer, parameter, public :: history_size = 5, history_size_plastic = 2
+
+  !> Most points that are updated at once: their fields stay in the first cache.
+  integer, parameter, public :: soil_points = 64
 
   !> Outcome of soil_update.
   integer, parameter, public :: soil_ok = 0, soil_inverted = 1, soil_not_finite = 2
@@ -99,42 +104,113 @@ contains
     real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
     real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
     integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
-    real(dp) :: dstrain(4), rotation(2), det_new, swelling, before(4)
-    logical :: yielded
+    real(dp) :: before(4,1), det_mid(1), det_old(1), det_new(1), suctions(2)
 
-    call objective_increment(f_old, f_new, dstrain, rotation, det_new, ierr)
-    if (ierr /= soil_ok) then
-      stress = effective
-      stiffness_scale = 1.0_dp
-      return
-    end if
-    call tensor_rotate(rotation, effective)
-    before = effective
-    if (law%own_strain .and. law%damage%driver /= driver_none) then
-      call tensor_rotate(rotation, strain)
-      strain = strain + dstrain
+    suctions = [suction_old, suction_new]
+    before(:, 1) = effective
+    call soil_trial(law, 1, f_old, f_new, suctions(1:1), suctions(2:2), before, strain, effective, &
+                    det_mid, det_old, det_new)
+    call soil_return(law, det_mid(1), 0.5_dp*(det_old(1) + det_new(1)), suction_new, saturation, &
+                     before(:, 1), strain, effective, history, stress, stiffness_scale, ierr)
+  end subroutine soil_update
+
+  !> First half of the update, for n points of one soil: turn the stress, add the elastic stress of
+  !! the strain less the suction strain.
+  pure subroutine soil_trial(law, n, f_old, f_new, suction_old, suction_new, before, strain, &
+    trial, det_mid, det_old, det_new)
+    type(soil_law_t), intent(in) :: law      !! prepared
+    integer, intent(in) :: n                 !! soil_points at most
+    real(dp), intent(in) :: f_old(4,n)       !! deformation gradient before [-]
+    real(dp), intent(in) :: f_new(4,n)       !! deformation gradient after [-]
+    real(dp), intent(in) :: suction_old(n)   !! s = -p_w before [Pa]
+    real(dp), intent(in) :: suction_new(n)   !! s after [Pa]
+    real(dp), intent(inout) :: before(4,n)   !! undamaged stress before in, turned out [Pa]
+    real(dp), intent(inout) :: strain(4,*)   !! total strain [-], (4,n); not used without damage
+    real(dp), intent(out) :: trial(4,n)      !! elastic trial stress [Pa]
+    real(dp), intent(out) :: det_mid(n)      !! J of the middle of the step [-]; 0 where inverted
+    real(dp), intent(out) :: det_old(n)      !! J before [-]
+    real(dp), intent(out) :: det_new(n)      !! J after [-]
+    real(dp) :: dstrain(4,soil_points), rotation(2,soil_points)
+    integer :: i
+
+    call objective_increments(n, f_old, f_new, dstrain, rotation, det_mid, det_old, det_new)
+    call tensors_rotate(n, rotation, before)
+    if (law%own_strain .and. soil_needs_strain(law)) then
+      call tensors_rotate(n, rotation, strain)
+      strain(:, :n) = strain(:, :n) + dstrain(:, :n)
     end if
     if (law%swelling%kind /= suction_strain_none) then
-      swelling = suction_strain_increment(law%swelling, suction_old, suction_new, det_new)
-      dstrain(1:3) = dstrain(1:3) - swelling
+      do i = 1, n
+        if (det_mid(i) > 0.0_dp) dstrain(1:3, i) = dstrain(1:3, i) &
+          - suction_strain_increment(law%swelling, suction_old(i), suction_new(i), det_new(i))
+      end do
     end if
-    call elastic_add(law%elastic, dstrain, effective)
+    call elastic_adds(law%elastic, n, dstrain, before, trial)
+  end subroutine soil_trial
+
+  !> Which of n points soil_return would leave as they are: 1, or 0 for the others. These are
+  !! points that have never yielded nor been damaged, and whose trial stress is inside the cone.
+  pure subroutine soil_stays_elastic(law, n, history, suction, saturation, det_mid, trial, stays)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: n
+    real(dp), intent(in) :: history(history_size,n) !! see history_*
+    real(dp), intent(in) :: suction(n)         !! s = -p_w after [Pa]
+    real(dp), intent(in) :: saturation(n)      !! effective saturation after [-]
+    real(dp), intent(in) :: det_mid(n)         !! of soil_trial
+    real(dp), intent(in) :: trial(4,n)         !! elastic trial stress [Pa]
+    real(dp), intent(out) :: stays(n)          !! 1 or 0
+    integer :: i
+
+    stays = 0.0_dp
+    if (soil_needs_strain(law)) return
+    if (law%plasticity == plasticity_drucker_prager) then
+      call strength_within(law%strength, n, suction, saturation, trial, stays)
+    else
+      do i = 1, n
+        stays(i) = merge(1.0_dp, 0.0_dp, &
+          abs(trial(1, i) + trial(2, i) + trial(3, i) + trial(4, i)) <= huge(1.0_dp))
+      end do
+    end if
+    do i = 1, n
+      stays(i) = stays(i)*merge(1.0_dp, 0.0_dp, det_mid(i) > 0.0_dp) &
+        *merge(0.0_dp, 1.0_dp, max(history(history_eqps, i), history(history_damage, i)) > 0.0_dp)
+    end do
+  end subroutine soil_stays_elastic
+
+  !> Second half of the update, at one point: return to the cone, raise damage, degrade.
+  pure subroutine soil_return(law, det_mid, volume, suction, saturation, before, strain, &
+    effective, history, stress, stiffness_scale, ierr)
+    type(soil_law_t), intent(in) :: law            !! prepared
+    real(dp), intent(in) :: det_mid                !! of soil_trial
+    real(dp), intent(in) :: volume                 !! mean of J before and after [-]
+    real(dp), intent(in) :: suction                !! s = -p_w after [Pa]
+    real(dp), intent(in) :: saturation             !! effective saturation after [-]
+    real(dp), intent(in) :: before(4)              !! undamaged stress before, turned [Pa]
+    real(dp), intent(in) :: strain(4)              !! total strain after [-]
+    real(dp), intent(inout) :: effective(4)        !! trial stress in, undamaged stress out [Pa]
+    real(dp), intent(inout) :: history(history_size) !! see history_*
+    real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
+    real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
+    integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
+    logical :: yielded
 
     stiffness_scale = 1.0_dp
-    yielded = .false.
     stress = effective
+    ierr = soil_inverted
+    if (.not. det_mid > 0.0_dp) return
+    ierr = soil_ok
+    yielded = .false.
     if (law%plasticity == plasticity_drucker_prager) then
-      call return_to_cone(law, suction_new, saturation, effective, history, yielded)
+      call return_to_cone(law, suction, saturation, effective, history, yielded)
       stiffness_scale = secant_shear_ratio(law%elastic%shear, effective, history(history_eqps))
     end if
     if (yielded .or. law%damage%driver /= driver_none) then
-      call dissipate(law, 0.5_dp*(det_new + f_old(1)*f_old(4) - f_old(2)*f_old(3)), yielded, &
-        before, strain, effective, history, stress)
+      call dissipate(law, volume, yielded, before, strain, effective, history, stress)
       stiffness_scale = stiffness_scale*(1.0_dp - history(history_damage))
     end if
     if (.not. ieee_is_finite(stress(1) + stress(2) + stress(3) + stress(4))) &
       ierr = soil_not_finite
-  end subroutine soil_update
+  end subroutine soil_return
 
   !> Plastic return of a trial stress, with the plastic strain it adds.
   !!
@@ -209,6 +285,22 @@ contains
       soil_stored_energy = elastic_energy(law%elastic, effective)
     end if
   end function soil_stored_energy
+
+  !> The same at n points.
+  pure subroutine soil_stored_energies(law, n, history, effective, energy)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: n
+    real(dp), intent(in) :: history(history_size,n) !! see history_*
+    real(dp), intent(in) :: effective(4,n)   !! undamaged stress [Pa]
+    real(dp), intent(out) :: energy(n)       !! [J/m3]
+    integer :: i
+
+    call elastic_energies(law%elastic, n, effective, energy)
+    do i = 1, n
+      if (history(history_damage, i) > 0.0_dp) energy(i) = &
+        soil_stored_energy(law, effective(:, i), history(history_damage, i))
+    end do
+  end subroutine soil_stored_energies
 
   !> Part chi of the pore pressure in the total stress: S_e above, 1 below the water table.
   elemental real(dp) function bishop_factor(suction, saturation)

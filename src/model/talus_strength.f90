@@ -8,10 +8,10 @@ module talus_strength
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
-  use talus_drucker_prager, only: cone_t, cone_shape, cone_set
+  use talus_drucker_prager, only: cone_t, cone_shape, cone_set, drucker_prager_within
   implicit none
   private
-  public :: strength_t, strength_prepare, strength_cone, strength_at
+  public :: strength_t, strength_prepare, strength_cone, strength_within, strength_at
 
   integer, parameter, public :: softening_none = 0, softening_linear = 1, &
     softening_exponential = 2, softening_table = 3
@@ -204,6 +204,29 @@ contains
     cone%alpha_psi = shape%alpha_psi
     call cone_set(cone, (shape%cohesion + added)*shape%k_over_c, strength%tension_cutoff)
   end subroutine shape_cone
+
+  !> Which of n trial stresses lie inside the cone of soil that has not yielded yet: 1, or 0 where
+  !! outside or not a number.
+  pure subroutine strength_within(strength, n, suction, saturation, stress, within)
+    type(strength_t), intent(in) :: strength
+    integer, intent(in) :: n
+    real(dp), intent(in) :: suction(n)    !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation(n) !! effective saturation [-]
+    real(dp), intent(in) :: stress(4,n)   !! trial stress [Pa], tension +
+    real(dp), intent(out) :: within(n)    !! 1 or 0
+    type(cone_t) :: cone
+    integer :: i
+
+    call shape_cone(strength, strength%peak, 0.0_dp, 0.0_dp, cone)
+    if (strength%suction == suction_strength_none) then
+      call drucker_prager_within(n, cone, stress, within)
+    else
+      do i = 1, n
+        call shape_cone(strength, strength%peak, suction(i), saturation(i), cone)
+        call drucker_prager_within(1, cone, stress(:, i), within(i:i))
+      end do
+    end if
+  end subroutine strength_within
 
   pure subroutine shape_at(strength, eqps, shape)
     type(strength_t), intent(in) :: strength

@@ -31,31 +31,44 @@ contains
     real(dp), contiguous, intent(in) :: load(:,:) !! weight and tractions [N/m], (2,n)
     real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n); (2,0) without
     real(dp), contiguous, intent(inout) :: force(:,:)    !! out-of-balance force [N/m], (2,n)
-    real(dp) :: f11, f12, f21, f22
-    integer :: i, k, l
-    logical :: stabilised
 
-    stabilised = size(stabilising, 2) > 0
+    call gather(size(load, 2), scni%node_offset, scni%cell, scni%bt, r, load, &
+                size(stabilising, 2) > 0, stabilising, force)
+  end subroutine force_unbalanced
+
+  !> The gather on plain arrays, a block of nodes at a time: first the products, row by row, then
+  !> what is added at the node.
+  subroutine gather(n, offset, cell, b, r, load, stabilised, stabilising, force)
+    integer, intent(in) :: n, offset(*), cell(*)
+    real(dp), intent(in) :: b(2,*), r(4,*), load(2,*), stabilising(2,*)
+    logical, intent(in) :: stabilised
+    real(dp), intent(inout) :: force(2,*)
+    integer, parameter :: block_length = 64
+    real(dp) :: product(4,block_length), s(4)
+    integer :: first, i, j, k, l, m
+
     !$omp do schedule(static)
-    do i = 1, size(load, 2)
-      ! Four sums, so that no addition waits for the one before.
-      f11 = 0.0_dp
-      f12 = 0.0_dp
-      f21 = 0.0_dp
-      f22 = 0.0_dp
-      do k = scni%node_offset(i), scni%node_offset(i+1) - 1
-        l = scni%cell(k)
-        f11 = f11 + r(1, l)*scni%bt(1, k)
-        f12 = f12 + r(2, l)*scni%bt(2, k)
-        f21 = f21 + r(3, l)*scni%bt(1, k)
-        f22 = f22 + r(4, l)*scni%bt(2, k)
+    do first = 0, n - 1, block_length
+      m = min(block_length, n - first)
+      do j = 1, m
+        s = 0.0_dp
+        !GCC$ unroll 4
+        do k = offset(first+j), offset(first+j+1) - 1
+          l = cell(k)
+          s(1:2) = s(1:2) + r(1:2, l)*b(:, k)
+          s(3:4) = s(3:4) + r(3:4, l)*b(:, k)
+        end do
+        product(:, j) = s
       end do
-      force(1, i) = load(1, i) - (f11 + f12)
-      force(2, i) = load(2, i) - (f21 + f22)
-      if (stabilised) force(:, i) = force(:, i) + stabilising(:, i)
+      do j = 1, m
+        i = first + j
+        force(1, i) = load(1, i) - (product(1, j) + product(2, j))
+        force(2, i) = load(2, i) - (product(3, j) + product(4, j))
+        if (stabilised) force(:, i) = force(:, i) + stabilising(:, i)
+      end do
     end do
     !$omp end do
-  end subroutine force_unbalanced
+  end subroutine gather
 
   !> Positions at the next whole step.
   subroutine motion_position(step, v, u)

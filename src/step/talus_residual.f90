@@ -22,39 +22,58 @@ contains
     real(dp), contiguous, intent(inout) :: force(:,:) !! force on the nodes [N/m], (2,n)
     real(dp), contiguous, intent(inout) :: energy(:) !! half the energy of a node's pairs [J/m], (n)
     real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
-    real(dp) :: r(2), reach(2), kappa, lost, rr, f(2), p(4), total, gone
+
+    call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
+                stabilise%stiffness, u, h, scale, before, q, force, energy, loss)
+  end subroutine residual_gather
+
+  !> The gather on plain arrays.
+  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, q, force, energy, loss)
+    integer, intent(in) :: n, offset(*), node(*)
+    real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*)
+    real(dp), intent(inout) :: q(4,*), force(2,*), energy(*), loss(*)
+    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone
     integer :: i, j, k
 
     !$omp do schedule(static)
-    do i = 1, size(scale)
-      f = 0.0_dp
-      p = 0.0_dp
+    do i = 1, n
+      f1 = 0.0_dp
+      f2 = 0.0_dp
+      p11 = 0.0_dp
+      p12 = 0.0_dp
+      p21 = 0.0_dp
+      p22 = 0.0_dp
       total = 0.0_dp
       gone = 0.0_dp
-      do k = stabilise%offset(i), stabilise%offset(i+1) - 1
-        j = stabilise%node(k)
-        reach = stabilise%reach(:, k)
-        r(1) = u(1, j) - u(1, i) &
-          - 0.5_dp*((h(1, i) + h(1, j))*reach(1) + (h(2, i) + h(2, j))*reach(2))
-        r(2) = u(2, j) - u(2, i) &
-          - 0.5_dp*((h(3, i) + h(3, j))*reach(1) + (h(4, i) + h(4, j))*reach(2))
-        kappa = stabilise%stiffness(k)*min(scale(i), scale(j))
-        lost = stabilise%stiffness(k)*min(before(i), before(j)) - kappa
-        rr = r(1)*r(1) + r(2)*r(2)
+      do k = offset(i), offset(i+1) - 1
+        j = node(k)
+        x = 0.5_dp*reach(1, k)
+        y = 0.5_dp*reach(2, k)
+        r1 = u(1, j) - u(1, i) - ((h(1, i) + h(1, j))*x + (h(2, i) + h(2, j))*y)
+        r2 = u(2, j) - u(2, i) - ((h(3, i) + h(3, j))*x + (h(4, i) + h(4, j))*y)
+        kappa = stiffness(k)*min(scale(i), scale(j))
+        lost = stiffness(k)*min(before(i), before(j)) - kappa
+        rr = r1*r1 + r2*r2
         total = total + kappa*rr
         gone = gone + lost*rr
-        r = kappa*r
-        f = f + r
-        p(1) = p(1) + r(1)*reach(1)
-        p(2) = p(2) + r(1)*reach(2)
-        p(3) = p(3) + r(2)*reach(1)
-        p(4) = p(4) + r(2)*reach(2)
+        r1 = kappa*r1
+        r2 = kappa*r2
+        f1 = f1 + r1
+        f2 = f2 + r2
+        p11 = p11 + r1*x
+        p12 = p12 + r1*y
+        p21 = p21 + r2*x
+        p22 = p22 + r2*y
       end do
-      force(:, i) = f
-      q(:, i) = q(:, i) - 0.5_dp*p
+      force(1, i) = f1
+      force(2, i) = f2
+      q(1, i) = q(1, i) - p11
+      q(2, i) = q(2, i) - p12
+      q(3, i) = q(3, i) - p21
+      q(4, i) = q(4, i) - p22
       energy(i) = 0.25_dp*total
       loss(i) = loss(i) + 0.25_dp*gone
     end do
     !$omp end do
-  end subroutine residual_gather
+  end subroutine gather
 end module talus_residual

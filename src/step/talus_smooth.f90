@@ -16,7 +16,7 @@ contains
     real(dp), contiguous, intent(in) :: y(:,:)    !! area times first-level gradient [m2], (4,n)
     real(dp), contiguous, intent(inout) :: h(:,:) !! smoothed gradient, (4,n)
 
-    call gather(two_level%offset, two_level%cell, two_level%s, y, h)
+    call gather(size(h, 2), two_level%offset, two_level%cell, two_level%s, y, h)
   end subroutine smooth_gradient
 
   !> First Piola stress smoothed by the adjoint.
@@ -26,26 +26,31 @@ contains
     real(dp), contiguous, intent(inout) :: r(:,:) !! smoothed first Piola stress [Pa], (4,n)
 
     if (allocated(two_level%sa)) then
-      call gather(two_level%offset, two_level%cell, two_level%sa, q, r)
+      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%sa, q, r)
     else
-      call gather(two_level%offset, two_level%cell, two_level%s, q, r)
+      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%s, q, r)
     end if
   end subroutine smooth_stress
 
-  subroutine gather(offset, cell, s, from, to)
-    integer, contiguous, intent(in) :: offset(:), cell(:)
-    real(dp), contiguous, intent(in) :: s(:), from(:,:)
-    real(dp), contiguous, intent(inout) :: to(:,:)
-    real(dp) :: total(4)
+  !> The gather on plain arrays, in rows of two.
+  subroutine gather(n, offset, cell, s, from, to)
+    integer, intent(in) :: n, offset(*), cell(*)
+    real(dp), intent(in) :: s(*), from(4,*)
+    real(dp), intent(inout) :: to(4,*)
+    real(dp) :: row_1(2), row_2(2)
     integer :: l, k
 
     !$omp do schedule(static)
-    do l = 1, size(to, 2)
-      total = 0.0_dp
+    do l = 1, n
+      row_1 = 0.0_dp
+      row_2 = 0.0_dp
+      !GCC$ unroll 4
       do k = offset(l), offset(l+1) - 1
-        total = total + s(k)*from(:, cell(k))
+        row_1 = row_1 + s(k)*from(1:2, cell(k))
+        row_2 = row_2 + s(k)*from(3:4, cell(k))
       end do
-      to(:, l) = total
+      to(1:2, l) = row_1
+      to(3:4, l) = row_2
     end do
     !$omp end do
   end subroutine gather

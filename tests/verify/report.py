@@ -38,9 +38,10 @@ TARGET_COLUMNS = ("case", "id", "date", "target", "measured", "at_least", "at_mo
 
 
 def store_story(output, story):
-    """Write the story of one case; lists of numbers go on one line, with six digits."""
+    """Write the story of one case; lists of numbers go on one line, with six digits, long curves thinned."""
     for picture in story.get("pictures", []):
         for curve in picture["curves"]:
+            curve["x"], curve["y"] = thinned(curve["x"], curve["y"])
             for axis in ("x", "y"):
                 curve[axis] = [float(f"{value:.6g}") for value in curve[axis]]
     text = json.dumps(story, indent=1)
@@ -48,6 +49,18 @@ def store_story(output, story):
     path = Path(output) / "report" / f"{story['kind']}_{story['case']}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text + "\n", encoding="utf-8")
+
+
+def thinned(x, y, parts=400):
+    """A curve over rising x with the lowest and highest point of each of `parts` stretches only."""
+    if len(x) <= 2 * parts or any(b < a for a, b in zip(x, x[1:])):
+        return x, y
+    kept = {0, len(x) - 1}
+    for k in range(parts):
+        stretch = range(k * len(x) // parts, (k + 1) * len(x) // parts)
+        kept |= {min(stretch, key=y.__getitem__), max(stretch, key=y.__getitem__)}
+    kept = sorted(kept)
+    return [x[i] for i in kept], [y[i] for i in kept]
 
 
 def load_stories(output, cases):

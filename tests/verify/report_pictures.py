@@ -91,6 +91,7 @@ def legend(figure, axes):
     handles, labels = axes.get_legend_handles_labels()
     if len(labels) > 4:
         figure.set_figwidth(SIZE[0] + 0.3 + 0.065 * max(len(label) for label in labels))
+        figure.set_figheight(max(SIZE[1], 0.3 + 0.17 * len(labels)))
         figure.legend(handles, labels, loc="outside right upper")
     elif labels:
         columns = 2 if max(len(label) for label in labels) < 34 else 1
@@ -140,10 +141,12 @@ def draw_curves(story, picture, folder):
     figure, axes = plt.subplots(figsize=SIZE)
     for curve in picture["curves"]:
         axes.plot(curve["x"], curve["y"], curve["style"], label=curve["name"], markersize=4)
-    if picture["log_x"]:
-        axes.set_xscale("log")
-    if picture["log_y"]:
-        axes.set_yscale("log")
+    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
+        if picture[f"log_{name}"]:
+            (axes.set_xscale if name == "x" else axes.set_yscale)("log")
+            values = [v for curve in picture["curves"] for v in curve[name] if v > 0]
+            if values:
+                log_axis(axis, values)
     if picture.get("down"):
         axes.invert_yaxis()
     if picture.get("equal"):

@@ -22,7 +22,7 @@ sub-steps where only water moves."""
 
 
 def number(value):
-    """Three digits, plain where that is readable: 0.00835, 1.3e-13, 402."""
+    """Three digits, four from 0.1 on, plain where that is readable: 0.00835, 1.381, 1.3e-13, 402."""
     if value is None:
         return "-"
     if not math.isfinite(value):
@@ -30,7 +30,7 @@ def number(value):
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
     if 1e-3 <= abs(value) < 1e6:
-        digits = max(0, 3 - 1 - math.floor(math.log10(abs(value))))
+        digits = max(0, (4 if abs(value) >= 0.1 else 3) - 1 - math.floor(math.log10(abs(value))))
         text = f"{value:.{digits}f}"
         return text.rstrip("0").rstrip(".") if "." in text else text
     mantissa, exponent = f"{value:.2e}".split("e")
@@ -63,8 +63,8 @@ def anchor(story):
 
 def heading(story):
     words = story["title"] or story["case"].replace("_", " ")
-    numbered = re.search(r"\d", story["id"])
-    return f"{story['id']}: {words}" if numbered else words[:1].upper() + words[1:]
+    text = f"{story['id']}: {words}" if re.search(r"\d", story["id"]) else words
+    return text[:1].upper() + text[1:]
 
 
 def link(story):
@@ -78,7 +78,7 @@ def report_text(stories, missing, pictures, run, tests):
     of all cases; `tests`: relative path of the folder of sources.
     """
     parts = ["# Verification report", verdict(stories, missing), "", INTRODUCTION.format(tests=tests)]
-    parts += ["", machines(stories, run), "", TIMES, "", "## Targets", "", targets_table(stories)]
+    parts += ["", machines(stories, run), "", TIMES, "", "## Targets", "", targets_tables(stories)]
     for letter, title in GROUPS:
         members = [s for s in stories if group_of(s["kind"], s["id"]) == letter]
         if members:
@@ -134,24 +134,50 @@ def machines(stories, run):
     return "\n".join(lines)
 
 
-def targets_table(stories):
-    rows = [
-        [
-            link(s),
-            t["what"],
-            f"**{number(t['value'])}**",
-            wanted(t),
-            "yes" if t["met"] else "**no**",
-            t["why"],
+def targets_tables(stories):
+    """A table of targets for each group, where targets of a case that differ in the run only are one row."""
+    parts = []
+    for letter, title in GROUPS:
+        rows = [
+            [link(s), *row]
+            for s in stories
+            if group_of(s["kind"], s["id"]) == letter
+            for row in collapsed(s["targets"])
         ]
-        for s in stories
-        for t in s["targets"]
-    ]
-    return table(["case", "target", "measured", "wanted", "met", "why this"], rows, right=(2, 3))
+        if rows:
+            head = ["case", "target", "measured", "wanted", "met", "why this"]
+            parts += [f"**{title}**", "", table(head, rows, right=(2, 3)), ""]
+    return "\n".join(parts[:-1])
+
+
+def collapsed(targets):
+    """Rows of targets: those with the same words after the last ': ' and the same limits become one.
+
+    Its measured value is the worst of them, or the range where both ends are limited. A target that is
+    not met keeps a row of its own.
+    """
+    groups = {}
+    for t in targets:
+        same = (t["what"].rsplit(": ", 1)[-1], t["low"], t["limit"], t["why"]) if t["met"] else id(t)
+        groups.setdefault(same, []).append(t)
+    rows = []
+    for members in groups.values():
+        first, values = members[0], [t["value"] for t in members]
+        what, measured = first["what"], number(max(values))
+        if len(members) > 1:
+            what = f"{what.rsplit(': ', 1)[-1]} ({len(members)} runs"
+            what += ", the worst)" if first["low"] is None else ")"
+            if first["low"] is not None and number(min(values)) != measured:
+                measured = f"{number(min(values))} to {measured}"
+        rows.append(
+            [what, f"**{measured}**", wanted(first), "yes" if first["met"] else "**no**", first["why"]]
+        )
+    return rows
 
 
 def study_table(story):
-    """Rows of the study; a repeated series, smoothing or stabilisation stays, for those who copy a row."""
+    """Rows of the study, from coarse to fine in each series."""
+    order = list(dict.fromkeys(r["series"] for r in story["runs"]))
     rows = [
         [
             r["series"],
@@ -164,7 +190,7 @@ def study_table(story):
             r["smoothing"],
             number(r["stabilisation"]),
         ]
-        for r in story["runs"]
+        for r in sorted(story["runs"], key=lambda r: (order.index(r["series"]), -r["spacing"]))
     ]
     head = ["series", "nodes", "spacing [m]", "error", "order", "wall [s]", "10⁶ node-steps/s"]
     return table([*head, "smoothing", "stabilisation"], rows, right=range(1, 7))

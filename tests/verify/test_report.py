@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import run_cases  # noqa: E402  (found through the path above)
 from case_list import find_cases, select_cases  # noqa: E402
-from report import load_stories, store_run, store_story, write_report  # noqa: E402
+from report import load_stories, store_run, store_story, thinned, write_report  # noqa: E402
 from report_text import number  # noqa: E402
 from talus_case import seconds_at  # noqa: E402
 
@@ -111,6 +111,26 @@ class Report(unittest.TestCase):
         lines = self.write(story_of("h1", [(0.01, 0.02)]))
         self.assertEqual(lines[2], "**All 1 targets are met.**")
         self.assertNotIn("not met", "\n".join(lines))
+
+    def test_like_targets_are_one_row_with_the_worst_value(self):
+        story = story_of("h1", [(1e-3, 0.02), (5e-3, 0.02), (0.9, 0.02), (2.0, 3.0)])
+        for i, what in enumerate(("51 rows: error", "101 rows: error", "201 rows: error", "other")):
+            story["targets"][i]["what"] = what
+        rows = [line for line in self.write(story) if line.startswith("| [H1]")]
+        self.assertEqual(len(rows), 3)
+        self.assertIn("| error (2 runs, the worst) | **0.005** | ≤ 0.02 | yes |", rows[0])
+        self.assertIn("| 201 rows: error | **0.9** | ≤ 0.02 | **no** |", rows[1])
+
+    def test_long_curves_keep_their_peaks(self):
+        x = np.linspace(0, 1, 30001)
+        y = np.sin(2000 * x)
+        y[12345] = 7.0
+        thin_x, thin_y = thinned(x.tolist(), y.tolist(), 300)
+        self.assertLessEqual(len(thin_x), 602)
+        self.assertEqual((thin_x[0], thin_x[-1], max(thin_y)), (0.0, 1.0, 7.0))
+        self.assertLess(min(thin_y), -0.999)
+        self.assertTrue(np.all(np.diff(thin_x) > 0))
+        self.assertEqual(thinned([1.0, 2.0], [3.0, 4.0], 300), ([1.0, 2.0], [3.0, 4.0]))
 
     def test_failures_and_absent_cases_are_named_first(self):
         self.add_case("h3", "H3")
@@ -246,7 +266,7 @@ class Numbers(unittest.TestCase):
             (1.0e-12, "1e-12"),
             (2.927e-15, "2.93e-15"),
             (402.0, "402"),
-            (1.3808, "1.38"),
+            (1.38076, "1.381"),
             (-4321.6, "-4322"),
             (None, "-"),
             (float("nan"), "nan"),

@@ -85,7 +85,7 @@ for time in TIMES:
         f"water that is not 0.5 t at t = {time}", abs(stored - 0.5 * time - start), 1e-6, "no water is lost"
     )
 if case.full:
-    case.target("error on the finest nodes, 40 to a unit", error[401], 0.005, "issue 3")
+    case.target("error on the finest nodes, 40 to a unit", error[401], 0.005, "the accuracy asked for")
 case.target(
     "largest water error of all runs",
     max(abs(float(result.summary["water_error"])) for result in results.values()),

@@ -69,7 +69,7 @@ for series, more, quick in (
         water.append(abs(float(result.summary["water_error"])))
         if series == "grid":
             table = water_table(result)
-    case.target(f"error of the flow, {series}, spacing {spacing} m", error, 0.01, "issue 3")
+    case.target(f"error of the flow, {series}, spacing {spacing} m", error, 0.01, "the accuracy asked for")
 if case.full:
     fringe = spacing / 25
     case.note(

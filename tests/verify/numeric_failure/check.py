@@ -55,12 +55,17 @@ def digest():
     return [hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(result.place.iterdir())]
 
 
-history = result.history()
 case.picture(
-    "A block crushed until it turns inside out",
-    "Time [s]",
-    "Largest displacement [m]",
-    {"until the last good state": (history["time"], history["maximum_displacement"], "C0.-")},
+    "Velocity one step before a crushed block turns inside out",
+    "Vertical velocity [m/s]",
+    "Height [m]",
+    {
+        "snapshot last_good, all nodes": (
+            result.field("velocity", "last_good")[:, 1],
+            result.nodes[:, 1],
+            "C0.",
+        )
+    },
 )
 before = digest()
 done = talus("run", "crush.nml", "--output", ".")

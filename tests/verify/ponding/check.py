@@ -70,6 +70,6 @@ for deck, error in worst.items():
         f"water error at any time, {deck.removesuffix('.nml')}",
         error,
         1e-12,
-        "issue 2; fluxes are exchanged between nodes, so only round-off is lost",
+        "fluxes are exchanged between nodes, so only round-off is lost",
     )
 sys.exit(case.verdict())

@@ -36,7 +36,7 @@ case.target("slide [m]", slide, 20.0, "more than a metre; less than the slope is
 speed = history["maximum_velocity"]
 case.check("last speed over the greatest [-]", speed[-1] / speed.max(), 0.2, "it comes to rest")
 case.target("water error of the storm", abs(float(summary["water_error"])), 1e-12, "round-off")
-case.target("energy error of the slide", float(summary["energy_error"]), 1e-3, "issue 2")
+case.target("energy error of the slide", float(summary["energy_error"]), 1e-3, "the accuracy asked for")
 case.note(
     f"{summary['nodes']} nodes; it fails after {trigger / 3600:.1f} h of rain; the run takes "
     f"{float(summary['wall_seconds']):.0f} s with {THREADS} thread{'s' if THREADS > 1 else ''}."
@@ -55,22 +55,19 @@ rainy = re.sub(r"&boundary\n  name = 'rain'.*?\n/\n", "", rainy, flags=re.S)
 told = [re.sub(r"^!.*\n", "", re.sub(r"  title = .*\n", "", text)) for text in (rainy, without)]
 case.check_true("the decks differ by the rain only", told[0] == told[1])
 
-sliding = history["time"] >= trigger
-dry_history = dry.history()
+curves = {}
+for name, columns, style in (("with rain", history, "C0.-"), ("without rain", dry.history(), "C1.--")):
+    storm = (columns["stage"] == "storm") & (columns["maximum_displacement"] > 0)
+    curves[name] = (columns["time"][storm] / 3600, columns["maximum_displacement"][storm], style)
 case.picture(
-    "Largest displacement over the storm",
-    "Time [h]",
-    "Largest displacement [m]",
-    {
-        "with rain": (history["time"] / 3600, history["maximum_displacement"].clip(1e-6), "C0-"),
-        "without rain": (dry_history["time"] / 3600, dry_history["maximum_displacement"].clip(1e-6), "C1--"),
-    },
-    log_y=True,
+    "Largest displacement over the storm", "Time [h]", "Largest displacement [m]", curves, log_y=True
 )
+sliding = history["stage"] == "slide"
+time = history["time"][sliding] - history["time"][sliding][0]
 case.picture(
     "The slide",
-    "Time after the trigger [s]",
+    "Time of the slide [s]",
     "Largest displacement [m]",
-    {"with rain": (history["time"][sliding] - trigger, history["maximum_displacement"][sliding], "C0-")},
+    {"with rain": (time, history["maximum_displacement"][sliding], "C0-")},
 )
 sys.exit(case.verdict())

@@ -64,7 +64,7 @@ for rows in (26, 51, 101, 201, 401) if case.full else (51, 101):
     )
     error[rows] = errors(results[rows])
     case.study("two columns of nodes", results[rows], spacing, error[rows][10])
-case.check("error at 10 h with 101 rows", error[101][10], 0.005, "issue 2")
+case.check("error at 10 h with 101 rows", error[101][10], 0.005, "the accuracy asked for")
 case.check("error of the steady start, 101 rows", error[101][0], 0.005, "the same fluxes without storage")
 case.check(
     "error at 0 h over that of twice the spacing",

@@ -29,6 +29,7 @@ contains
             'name', 'another stage has this name', messages, 'a name of its own')
         end do
         call check_solve(store, at(i), stage, deck, messages)
+        call check_mass(store, at(i), stage, deck, messages)
         call check_clock(store, at(i), stage, messages)
         call check_order(store, at(i), i, deck, messages)
         if (stage%solve == 'soil' .or. stage%solve == 'both') then
@@ -70,6 +71,29 @@ contains
                 'velocities mean nothing', messages)
     end if
   end subroutine check_solve
+
+  !> What a consistent mass cannot be combined with.
+  subroutine check_mass(store, section, stage, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(stage_t), intent(in) :: stage
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: i
+
+    if (stage%mass /= 'consistent') return
+    if (stage%mass_scaling) call complain(store, section, 'mass', &
+      'a scaled mass is not that of the soil', messages, &
+      '''lumped'' with mass_scaling, or mass_scaling = .false.')
+    do i = 1, size(deck%boundary)
+      if (size(deck%boundary(i)%velocity_gradient) == 0) cycle
+      if (.not. deck_acts_in(deck%boundary(i), stage%name)) cycle
+      call complain(store, section, 'mass', &
+        'the acceleration of nodes with a velocity_gradient does not reach their neighbours', &
+        messages, '''lumped'' where a velocity_gradient acts')
+      return
+    end do
+  end subroutine check_mass
 
   subroutine check_clock(store, section, stage, messages)
     type(store_t), intent(in) :: store

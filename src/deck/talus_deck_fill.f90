@@ -254,6 +254,9 @@ contains
     call get(store, s, 'steps_max', stage%steps_max)
     call get(store, s, 'damping', stage%damping)
     call get(store, s, 'mass_scaling', stage%mass_scaling)
+    call get(store, s, 'mass', stage%mass)
+    ! Relaxation has masses of its own.
+    if (stage%kind /= 'dynamic') stage%mass = 'lumped'
     call get(store, s, 'step_safety', stage%step_safety)
     call get(store, s, 'failure_displacement', stage%failure_displacement)
     call get(store, s, 'after_failure', stage%after_failure)

@@ -147,6 +147,10 @@ contains
              'critically as well.')
     call key(t, 'mass_scaling', 'logical', '', '~.false. if dynamic, else .true.', '', &
              'Scale the masses so that relaxation takes few steps.')
+    call key(t, 'mass', 'string', '', 'lumped', 'lumped|consistent', &
+             'Inertia in real time: at the nodes, or consistent with the cell means of the '// &
+             'strain, which makes waves run at their speed on coarse nodes too, at a step '// &
+             'shorter by about a third.', 'kind=dynamic')
     call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
              'Time step over the largest stable one.')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &

@@ -107,6 +107,7 @@ module talus_deck_types
     integer :: steps_max
     real(dp) :: damping
     logical :: mass_scaling
+    character(:), allocatable :: mass
     real(dp) :: step_safety, failure_displacement
     character(:), allocatable :: after_failure
     logical :: only_after_failure

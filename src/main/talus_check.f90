@@ -151,6 +151,7 @@ contains
       if (stage%solve /= 'seepage') then
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
         session%motion%local = stage%damping
+        session%motion%consistent = stage%mass == 'consistent'
         call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
                             stage%mass_scaling, 1.0_dp, session%motion, session%work)
         write (output_unit, '(2a)') '  stable soil step        ', &

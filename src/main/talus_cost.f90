@@ -55,7 +55,8 @@ contains
       ! Strength reduction also keeps the state of its mechanism.
       cost%state = merge(3_i8, 2_i8, allocated(session%reduction))*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
-        + bytes(work%stabilising) + bytes(work%force) + 32_i8*int(disc%n, i8)
+        + bytes(work%stabilising) + bytes(work%force) + bytes(work%pull) &
+        + bytes(session%motion%pair_mass) + 32_i8*int(disc%n, i8)
       if (session%ground%wet) then
         ! Eleven numbers a face and six a node besides the matrix.
         cost%seepage = 8_i8*(11_i8*int(size(disc%dual%edge_node, 2), i8) + 6_i8*int(disc%n, i8))

@@ -92,13 +92,15 @@ contains
         session%motion%local = stage%damping
         session%motion%viscous = 0.0_dp
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
+        session%motion%consistent = stage%mass == 'consistent'
         call take_load(session)
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
         call start_motion(session, stage)
         session%energies_start = audit_energies(disc, session%ground, session%motion, state)
         session%declared = session%declared//stage%name//': mass scaling '// &
-          trim(merge('on ', 'off', stage%mass_scaling))//', local damping '// &
+          trim(merge('on ', 'off', stage%mass_scaling))//', '//stage%mass// &
+          ' mass, local damping '// &
           text_of(stage%damping)//'; '
       end if
       if (stage%solve /= 'soil') call seepage_shape(session%seepage, disc, session%ground, &

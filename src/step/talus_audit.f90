@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Where energy and water are, and how well they balance (src/THEORY.md (5.5)-(5.7)).
 !>
-!> Kinetic energy is 1/2 m v(n-1/2).v(n+1/2), the one that central differences conserve. All others
+!> Kinetic energy is 1/2 v(n-1/2).M v(n+1/2), the one that central differences conserve. All others
 !> come from the stress and the history of the points, not from nodal forces, so the balance checks
 !> the discretisation, its adjoint, the laws and the time step together.
 module talus_audit
@@ -12,6 +12,7 @@ module talus_audit
   use talus_soil_law, only: soil_stored_energy, stress_bishop, history_damage, &
     history_plastic_work, history_damage_work
   use talus_soil_step, only: motion_t
+  use talus_inertia, only: inertia_momentum
   use talus_sum, only: sum_blocks, sum_products
   implicit none
   private
@@ -62,7 +63,7 @@ contains
     end do
     !$omp end parallel do
     energies%strain = sum_products(disc%n, density, disc%dual%area)
-    call kinetic_energy(disc%n, motion, state, energies%kinetic, energies%motion)
+    call kinetic_energy(disc, motion, state, energies%kinetic, energies%motion)
     if (allocated(state%history)) then
       density = state%history(history_plastic_work, :)
       energies%plastic = sum_products(disc%n, density, disc%dual%area)
@@ -79,21 +80,23 @@ contains
     energies%external = state%external + load_work(disc%n, state)
   end function audit_energies
 
-  !> 1/2 m v(n-1/2).v(n+1/2) over the nodes that can move, and 1/2 m v(n+1/2)^2.
-  subroutine kinetic_energy(n, motion, state, energy, ahead)
-    integer, intent(in) :: n
+  !> 1/2 v(n-1/2).M v(n+1/2) over the nodes that can move, and 1/2 v(n+1/2).M v(n+1/2).
+  subroutine kinetic_energy(disc, motion, state, energy, ahead)
+    type(disc_t), intent(in) :: disc
     type(motion_t), intent(in) :: motion
     type(state_t), intent(in) :: state
     real(dp), intent(out) :: energy, ahead !! [J/m]
     real(dp), allocatable :: momentum(:,:)
 
-    allocate (momentum(2, n))
-    momentum = 0.0_dp
-    where (motion%mobility > 0.0_dp) &
-      momentum = (state%v - motion%step*state%acceleration)/motion%mobility
-    energy = 0.5_dp*sum_products(2*n, momentum, state%v)
-    where (motion%mobility > 0.0_dp) momentum = state%v/motion%mobility
-    ahead = 0.5_dp*sum_products(2*n, momentum, state%v)
+    if (motion%consistent) then
+      call inertia_momentum(disc%dual, motion%pair_mass, motion%mobility, state%v, momentum)
+    else
+      allocate (momentum(2, disc%n))
+      momentum = 0.0_dp
+      where (motion%mobility > 0.0_dp) momentum = state%v/motion%mobility
+    end if
+    ahead = 0.5_dp*sum_products(2*disc%n, momentum, state%v)
+    energy = 0.5_dp*sum_products(2*disc%n, momentum, state%v - motion%step*state%acceleration)
   end subroutine kinetic_energy
 
   !> Work of the present load since it was set.

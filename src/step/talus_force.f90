@@ -1,12 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Internal force as the adjoint of the strain, gathered by node (src/THEORY.md (4.8)), and the
-!> motion it causes: central differences with lumped mass (5.1).
+!> motion it causes: central differences (5.1) with the lumped or the consistent mass (5.11).
 module talus_force
   use talus_kinds, only: dp
   use talus_scni, only: scni_t
+  use talus_inertia, only: inertia_gather
   implicit none
   private
   public :: force_one_level, force_unbalanced, motion_position, motion_velocity
+  public :: motion_damp, motion_velocity_consistent
 
 contains
 
@@ -125,4 +127,50 @@ contains
     end do
     !$omp end do
   end subroutine motion_velocity
+
+  !> Out-of-balance force less local damping, as in motion_velocity, for the consistent mass: a node
+  !> is also moved by the force on its neighbours.
+  subroutine motion_damp(local, force, v, pull)
+    real(dp), intent(in) :: local !! local damping, fraction 0..1
+    real(dp), contiguous, intent(in) :: force(:,:)   !! out-of-balance force [N/m], (2,n)
+    real(dp), contiguous, intent(in) :: v(:,:)       !! velocity half a step back [m/s], (2,n)
+    real(dp), contiguous, intent(inout) :: pull(:,:) !! what is left of the force [N/m], (2,n)
+    integer :: i, j
+
+    !$omp do schedule(static)
+    do i = 1, size(v, 2)
+      do j = 1, 2
+        pull(j, i) = force(j, i)
+        if (abs(v(j, i)) > 0.0_dp) pull(j, i) = force(j, i) - sign(local*abs(force(j, i)), v(j, i))
+      end do
+    end do
+    !$omp end do
+  end subroutine motion_damp
+
+  !> Velocities at the next half step with the consistent mass (src/THEORY.md (5.11)). Held nodes
+  !> keep theirs.
+  subroutine motion_velocity_consistent(step, offset, node, pair_mass, mobility, force, pull, v, &
+                                        acceleration, damped)
+    real(dp), intent(in) :: step !! time step [s]
+    integer, contiguous, intent(in) :: offset(:), node(:)    !! neighbours of each node
+    real(dp), contiguous, intent(in) :: pair_mass(:)         !! of each neighbour [kg/m]
+    real(dp), contiguous, intent(in) :: mobility(:,:)        !! [m/kg], (2,n)
+    real(dp), contiguous, intent(in) :: force(:,:)           !! out-of-balance force [N/m], (2,n)
+    real(dp), contiguous, intent(in) :: pull(:,:)            !! the same less damping [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: v(:,:)            !! velocity [m/s], (2,n)
+    real(dp), contiguous, intent(inout) :: acceleration(:,:) !! with damping [m/s2], (2,n)
+    real(dp), contiguous, intent(inout) :: damped(:)         !! energy damped so far [J/m], (n)
+    real(dp) :: middle(2)
+    integer :: i
+
+    !$omp do schedule(static)
+    do i = 1, size(damped)
+      acceleration(:, i) = inertia_gather(offset, node, pair_mass, mobility, pull, i)
+      middle = v(:, i) + 0.5_dp*step*acceleration(:, i)
+      v(:, i) = v(:, i) + step*acceleration(:, i)
+      damped(i) = damped(i) + step*dot_product(middle, &
+        merge(force(:, i) - pull(:, i), 0.0_dp, mobility(:, i) > 0.0_dp))
+    end do
+    !$omp end do
+  end subroutine motion_velocity_consistent
 end module talus_force

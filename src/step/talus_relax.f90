@@ -11,6 +11,7 @@ module talus_relax
   use talus_time_step, only: time_step_stable, water_bulk_modulus
   use talus_soil_law, only: stress_bishop
   use talus_sum, only: sum_products
+  use talus_inertia, only: inertia_pairs
   use talus_audit, only: audit_driven
   implicit none
   private
@@ -36,7 +37,7 @@ module talus_relax
 contains
 
   !> Masses and step of a stage. Scaled masses give every node the same stable step, near one
-  !> second; true ones give real time.
+  !> second; true ones give real time. Lumped or consistent, as motion%consistent says.
   subroutine motion_prepare(disc, ground, conditions, state, scaled, safety, motion, work)
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
@@ -69,6 +70,7 @@ contains
     do i = 1, disc%n
       motion%mobility(:, i) = merge(0.0_dp, 1.0_dp/mass(i), conditions%held(:, i))
     end do
+    call prepare_inertia(disc, mass, motion, work)
     motion%safety = safety
     motion%stiffens = motion%coupled .and. any(ground%law%stress == stress_bishop)
     motion%step = huge(1.0_dp)
@@ -76,6 +78,20 @@ contains
     ! Without a node that can move, any step will do.
     if (motion%step > 0.1_dp*huge(1.0_dp)) motion%step = 1.0_dp
   end subroutine motion_prepare
+
+  !> What a consistent mass needs; nothing for a lumped one.
+  subroutine prepare_inertia(disc, mass, motion, work)
+    type(disc_t), intent(in) :: disc
+    real(dp), intent(in) :: mass(:) !! lumped [kg/m], (n)
+    type(motion_t), intent(inout) :: motion
+    type(work_t), intent(inout) :: work
+
+    if (allocated(motion%pair_mass)) deallocate (motion%pair_mass)
+    deallocate (work%pull)
+    allocate (work%pull(2, merge(disc%n, 0, motion%consistent .and. motion%local > 0.0_dp)), &
+              source=0.0_dp)
+    if (motion%consistent) motion%pair_mass = inertia_pairs(disc%dual, disc%mesh%x, mass)
+  end subroutine prepare_inertia
 
   !> Shorten the step where the body has become stiffer since it was last set.
   subroutine motion_refresh(disc, ground, state, motion, work)

@@ -7,7 +7,7 @@
 !>   r       = affine residual, its force and its P      residual_gather
 !>   R       = W^T P                                     smooth_stress
 !>   f       = load + stabilisation - G^T R              force_unbalanced
-!>   v_n+3/2 = v_n+1/2 + dt f/m                          motion_velocity
+!>   v_n+3/2 = v_n+1/2 + dt M^-1 f                       motion_velocity
 module talus_soil_step
   use talus_kinds, only: dp, i8
   use talus_disc, only: disc_t
@@ -17,7 +17,8 @@ module talus_soil_step
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather
-  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity
+  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity, &
+    motion_damp, motion_velocity_consistent
   implicit none
   private
   public :: work_t, motion_t, work_allocate, soil_step, soil_force
@@ -30,6 +31,7 @@ module talus_soil_step
     real(dp), allocatable :: q(:,:)           !! area times first Piola stress [N m/m], (4,n)
     real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n) or (2,0)
     real(dp), allocatable :: force(:,:)       !! out-of-balance force [N/m], (2,n)
+    real(dp), allocatable :: pull(:,:)        !! less damping, for a consistent mass, (2,n) or (2,0)
   end type work_t
 
   !> How the nodes move in a stage.
@@ -40,8 +42,10 @@ module talus_soil_step
     real(dp) :: safety = 1.0_dp            !! step over stable step
     logical :: coupled = .false.           !! pore pressure follows the soil
     logical :: stiffens = .false.          !! and that may stiffen the soil
+    logical :: consistent = .false.        !! mass is consistent with the strain, else lumped
     real(dp), allocatable :: mode(:,:)     !! fastest mode when last looked for, (2,n)
     real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
+    real(dp), allocatable :: pair_mass(:)  !! of each edge at both ends, if consistent [kg/m]
   end type motion_t
 
 contains
@@ -55,6 +59,7 @@ contains
               source=0.0_dp)
     allocate (work%stabilising(2, merge(disc%n, 0, disc%stabilised)), source=0.0_dp)
     allocate (work%drive(4, merge(disc%n, 0, disc%damage_only)), source=0.0_dp)
+    allocate (work%pull(2, 0))
   end subroutine work_allocate
 
   !> Advance the soil by one step. `failed` is 0, or code*n + node of the worst failure (codes of
@@ -71,11 +76,34 @@ contains
     !$omp parallel default(none) shared(disc, ground, motion, state, work, failed)
     call motion_position(motion%step, state%v, state%u)
     call forces(disc, ground, motion%coupled, state, work, failed)
-    call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
-                         state%v, state%acceleration, state%damped)
+    if (motion%consistent) then
+      call move_consistent(disc, motion, state, work)
+    else
+      call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
+                           state%v, state%acceleration, state%damped)
+    end if
     !$omp end parallel
     state%steps = state%steps + 1_i8
   end subroutine soil_step
+
+  !> Velocities with the consistent mass; within a parallel region.
+  subroutine move_consistent(disc, motion, state, work)
+    type(disc_t), intent(in) :: disc
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+
+    associate (offset => disc%dual%node_offset, node => disc%dual%node_neighbour)
+      if (motion%local > 0.0_dp) then
+        call motion_damp(motion%local, work%force, state%v, work%pull)
+        call motion_velocity_consistent(motion%step, offset, node, motion%pair_mass, &
+          motion%mobility, work%force, work%pull, state%v, state%acceleration, state%damped)
+      else
+        call motion_velocity_consistent(motion%step, offset, node, motion%pair_mass, &
+          motion%mobility, work%force, work%force, state%v, state%acceleration, state%damped)
+      end if
+    end associate
+  end subroutine move_consistent
 
   !> Stress and out-of-balance force at the present position, without moving.
   subroutine soil_force(disc, ground, coupled, state, work, failed)

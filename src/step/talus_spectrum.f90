@@ -7,6 +7,7 @@ module talus_spectrum
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_soil_step, only: work_t, motion_t
+  use talus_inertia, only: inertia_apply
   use talus_time_step, only: stiffness_apply, water_bulk_modulus
   implicit none
   private
@@ -24,6 +25,15 @@ module talus_spectrum
       real(dp), intent(out) :: w(*), work(*)
       integer, intent(out) :: info
     end subroutine dsyev
+
+    subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
+      import :: dp
+      character, intent(in) :: jobz, uplo
+      integer, intent(in) :: itype, n, lda, ldb, lwork
+      real(dp), intent(inout) :: a(lda,*), b(ldb,*)
+      real(dp), intent(out) :: w(*), work(*)
+      integer, intent(out) :: info
+    end subroutine dsygv
   end interface
 
 contains
@@ -36,7 +46,8 @@ contains
     type(motion_t), intent(in) :: motion
     type(work_t), intent(inout) :: work
     real(dp), allocatable, intent(out) :: square(:) !! omega^2 [1/s2]
-    real(dp), allocatable :: a(:,:), d(:,:), nothing(:,:), bulk(:), lapack_work(:), root(:)
+    real(dp), allocatable :: a(:,:), b(:,:), d(:,:), nothing(:,:), bulk(:), root(:)
+    real(dp), allocatable :: lapack_work(:)
     integer, allocatable :: free(:)
     integer :: i, k, m, info
 
@@ -56,7 +67,35 @@ contains
       end do
     end do
     a = 0.5_dp*(a + transpose(a))
-    call dsyev('N', 'U', m, a, m, square, lapack_work, size(lapack_work), info)
+    if (motion%consistent) then
+      ! A B x = omega^2 x with A = m^-1/2 K m^-1/2 and B = m^1/2 M^-1 m^1/2.
+      call inverse_mass(disc, motion, free, root, b)
+      call dsygv(2, 'N', 'U', m, a, m, b, m, square, lapack_work, size(lapack_work), info)
+    else
+      call dsyev('N', 'U', m, a, m, square, lapack_work, size(lapack_work), info)
+    end if
     if (info /= 0) square = -1.0_dp
   end subroutine spectrum_frequencies
+
+  !> The inverse of the consistent mass over the directions that can move, times the root of the
+  !> lumped one from both sides.
+  subroutine inverse_mass(disc, motion, free, root, b)
+    type(disc_t), intent(in) :: disc
+    type(motion_t), intent(in) :: motion
+    integer, intent(in) :: free(:)   !! directions 2*(node - 1) + axis
+    real(dp), intent(in) :: root(:)  !! of the mobility
+    real(dp), allocatable, intent(out) :: b(:,:)
+    real(dp), allocatable :: d(:,:), column(:,:)
+    integer :: i, k
+
+    allocate (b(size(free), size(free)), d(2, disc%n), column(2, disc%n))
+    do k = 1, size(free)
+      d = 0.0_dp
+      d(1 + modulo(free(k) - 1, 2), 1 + (free(k) - 1)/2) = 1.0_dp/root(free(k))
+      call inertia_apply(disc%dual, motion%pair_mass, motion%mobility, d, column)
+      do i = 1, size(free)
+        b(i, k) = column(1 + modulo(free(i) - 1, 2), 1 + (free(i) - 1)/2)/root(free(i))
+      end do
+    end do
+  end subroutine inverse_mass
 end module talus_spectrum

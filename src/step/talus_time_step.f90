@@ -13,6 +13,7 @@ module talus_time_step
   use talus_strain, only: strain_first, strain_one_level
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_residual, only: residual_gather
+  use talus_inertia, only: inertia_apply
   use talus_force, only: force_one_level, force_unbalanced
   use talus_soil_step, only: work_t, motion_t
   implicit none
@@ -34,11 +35,11 @@ contains
     type(state_t), intent(in) :: state
     type(motion_t), intent(inout) :: motion
     type(work_t), intent(inout) :: work
-    real(dp), allocatable :: d(:,:), bulk(:), nothing(:,:)
-    real(dp) :: square, before
+    real(dp), allocatable :: d(:,:), md(:,:), bulk(:), nothing(:,:)
+    real(dp) :: square, before, length
     integer :: turn
 
-    allocate (d(2, disc%n), bulk(disc%n), nothing(2, disc%n))
+    allocate (d(2, disc%n), md(2, disc%n), bulk(disc%n), nothing(2, disc%n))
     nothing = 0.0_dp
     call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
     call start_vector(motion%mobility, d)
@@ -47,32 +48,30 @@ contains
     if (square <= 0.0_dp) return
     ! The fastest mode moves little from one look to the next; some of all others finds a new one.
     if (allocated(motion%mode)) d = motion%mode + (start_share/sqrt(square))*d
+    ! A first guess of M d when the mass is not lumped; the next turn has it exactly.
+    md = 0.0_dp
+    where (motion%mobility > 0.0_dp) md = d/motion%mobility
     before = 0.0_dp
     do turn = 1, power_max
       ! In the metric of the mass the operator is symmetric: omega^2 = d.Kd/(d.Md) with
       ! d = M^-1 K d_before, where d.Md = d.K d_before.
-      d = d/sqrt(sum_products(2*disc%n, d, d))
+      length = sqrt(sum_products(2*disc%n, d, d))
+      d = d/length
+      md = md/length
       call stiffness_apply(disc, ground, state, bulk, nothing, d, work)
-      square = rayleigh(disc%n, d, work%force, motion%mobility)
-      d = work%force*motion%mobility
+      square = sum_products(2*disc%n, d, work%force)/sum_products(2*disc%n, d, md)
+      md = work%force
+      if (motion%consistent) then
+        call inertia_apply(disc%dual, motion%pair_mass, motion%mobility, work%force, d)
+      else
+        d = work%force*motion%mobility
+      end if
       if (abs(square - before) <= power_tolerance*square) exit
       before = square
     end do
     step = 2.0_dp/sqrt(square)
     motion%mode = d/sqrt(sum_products(2*disc%n, d, d))
   end function time_step_stable
-
-  !> d.Kd/(d.Md) over the nodes that can move.
-  real(dp) function rayleigh(n, d, kd, mobility)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: d(2,n), kd(2,n), mobility(2,n)
-    real(dp), allocatable :: md(:,:)
-
-    allocate (md(2, n))
-    md = 0.0_dp
-    where (mobility > 0.0_dp) md = d/mobility
-    rayleigh = sum_products(2*n, d, kd)/sum_products(2*n, d, md)
-  end function rayleigh
 
   !> Alternating values with an irregular part, so that no mode is left out.
   pure subroutine start_vector(mobility, d)

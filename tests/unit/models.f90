@@ -18,6 +18,7 @@ module models
   use talus_conditions, only: conditions_t, conditions_allocate
   use talus_initial, only: initial_water, weight_masses
   use talus_soil_step, only: work_t, motion_t, work_allocate
+  use talus_inertia, only: inertia_pairs
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   implicit none
   private
@@ -35,6 +36,7 @@ module models
     logical :: damage_only = .false.
     real(dp) :: stabilisation = 0.05_dp     !! 0 for none
     real(dp) :: support = 1.6_dp            !! kernel support radius over spacing
+    logical :: consistent = .false.         !! mass is consistent with the strain
     real(dp) :: layer = huge(1.0_dp)        !! soil 2 is above this elevation [m]
   end type square_t
 
@@ -150,6 +152,9 @@ contains
     call conditions_allocate(model%conditions, model%disc%n)
     call work_allocate(model%work, model%disc)
     model%motion%mobility = 1.0_dp/spread(model%state%mass, 1, 2)
+    model%motion%consistent = square%consistent
+    if (square%consistent) model%motion%pair_mass = inertia_pairs(model%disc%dual, &
+      model%disc%mesh%x, model%state%mass)
   end subroutine model_build
 
   !> A named part of the boundary.

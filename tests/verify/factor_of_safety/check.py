@@ -3,9 +3,9 @@
 
 2:1 slope, H = 10 m, phi = 20, psi = 0, c/(gamma H) = 0.05: 1.380 by the charts of Bishop & Morgenstern,
 (1.35, 1.40] by their finite elements. The answer may not hang on when a trial counts as failed: with the
-displacement that counts as failure three times smaller and larger it changes by less than 0.02 (published
-stopping rules that are too loose raise the factor by 2 to 45 %). The other thresholds and finer meshes:
-factor_of_safety_meshes.
+displacement that counts as failure, and with --full every other threshold of the criterion, three times
+smaller and larger it changes by less than 0.02 (published stopping rules that are too loose raise the factor
+by 2 to 45 %). Other meshes: factor_of_safety_meshes.
 """
 
 import sys
@@ -15,8 +15,15 @@ import numpy as np
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from talus_case import Case  # noqa: E402
 
-case = Case(__file__.rsplit("/", 1)[0])
+case = Case(
+    __file__.rsplit("/", 1)[0],
+    id="S1",
+    title="Factor of safety by strength reduction: thresholds, and the moments of a run",
+    error="none: targets",
+    reference="Griffiths & Lane 1999, example 1: charts of Bishop & Morgenstern 1.380, elements (1.35, 1.40]",
+)
 WIDTH = 0.01  # factor_tolerance, the default
+TWO = "levels = 2\n  length = 1.4"
 
 
 def factor_of(result):
@@ -30,8 +37,19 @@ def within(what, result):
         f"     {what}: {factor:.4f} in {result.summary['factor_trials']} trials: "
         f"{result.summary['factor_criterion']}"
     )
-    case.check_true(f"{what}: {factor:.4f} lies between 1.35 and 1.41", 1.35 <= factor <= 1.41)
+    case.target(f"factor of safety, {what}, h = 0.45 m", factor, 1.41, "issue, S1; charts 1.380", low=1.35)
     return factor
+
+
+def trials(results):
+    """Factor and displacement of what stood, and of what failed, over all trials of some runs."""
+    points = {True: [], False: []}
+    for result in results:
+        history = result.history()
+        for i in np.flatnonzero(history["stage"] == "factor"):
+            stood = bool(history["factor_stands"][i] > 0.5)
+            points[stood].append((history["factor"][i], history["maximum_displacement"][i]))
+    return [np.array(sorted(points[stood])).T for stood in (True, False)]
 
 
 def bookkeeping(result):
@@ -66,10 +84,12 @@ def bookkeeping(result):
 
 first = case.run("slope.nml", name="level_1")
 bookkeeping(first)
-factor = within("level 1", first)
-within("level 2", case.run("slope.nml", [("levels = 1", "levels = 2\n  length = 1.4")], name="level_2"))
+factor = within("one level", first)
+second = case.run("slope.nml", [("levels = 1", TWO)], name="level_2")
+factor_two = within("two levels", second)
 
 moved = float(first.summary["factor_failure_displacement"])
+others = []
 for times in (1 / 3, 3.0):
     # From nearer, so that the trials fall on other factors.
     other = case.run(
@@ -77,12 +97,37 @@ for times in (1 / 3, 3.0):
         [("factor_first = 1.0", f"factor_first = 1.32\n  failure_displacement = {times * moved}")],
         name=f"times_{times:.2f}",
     )
+    others.append(other)
     case.check(
         f"failure_displacement x {times:.2f}: {factor_of(other):.4f}, change",
         abs(factor_of(other) - factor),
         0.02,
         "the answer does not hang on the threshold",
     )
+
+if case.full:
+    STEPS, TOLERANCE = "steps_max = 10000", "tolerance = 1.0e-5  ! factor"
+    for level, base, smoothing in ((1, factor, []), (2, factor_two, [("levels = 1", TWO)])):
+        for name, old, new in (
+            ("displacement by 3", STEPS, f"{STEPS}\n  failure_displacement = {moved / 3}"),
+            ("displacement times 3", STEPS, f"{STEPS}\n  failure_displacement = {moved * 3}"),
+            ("steps_max by 3", STEPS, "steps_max = 3333"),
+            ("steps_max times 3", STEPS, "steps_max = 30000"),
+            ("tolerance by 3", TOLERANCE, "tolerance = 3.333e-6"),
+            ("tolerance times 3", TOLERANCE, "tolerance = 3.0e-5"),
+        ):
+            if (level == 1) == ("displacement" in name):
+                continue  # done above, or as at one level
+            replace = [*smoothing, (old, new), ("factor_first = 1.0", "factor_first = 1.32")]
+            other = case.run("slope.nml", replace, name=f"{level}_{name}".replace(" ", "_"))
+            if level == 1:
+                others.append(other)
+            case.target(
+                f"level {level}, {name}: {factor_of(other):.4f}, change of the factor",
+                abs(factor_of(other) - base),
+                0.02,
+                "the answer does not hang on the threshold",
+            )
 
 # Where the soil does not stand at the first factor, strides go down to the same answer.
 down = case.run("slope.nml", [("factor_first = 1.0", "factor_first = 1.7")], name="down")
@@ -94,6 +139,20 @@ case.check(
 )
 factors = down.history()["factor"][down.history()["stage"] == "factor"]
 case.check_true("from above: the first stride goes down", factors[0] == 1.7 and factors[1] < 1.7)
+
+stood, fell = trials([first, down, *others])
+unit = 20.0e3 * 10.0**2 / 1.0e8  # gamma H^2/E [m]
+case.picture(
+    "displacement",
+    "factor that divides the strength [-]",
+    "largest displacement over gamma H^2/E [-]",
+    {
+        "stands": (stood[0], stood[1] / unit, "o"),
+        "fails (where the trial ended)": (fell[0], fell[1] / unit, "x"),
+        "charts of Bishop & Morgenstern": ([1.38, 1.38], [0.1, 30.0], "k--"),
+    },
+    log_y=True,
+)
 
 # Factors at several moments of one run, with the pore pressure of each.
 rain = case.run("rain.nml")

@@ -3,10 +3,10 @@
 
 c/(gamma H) = 0.05 stands. Strength divided by a factor: published factor of safety 1.380 (Bishop &
 Morgenstern), (1.35, 1.40] by finite elements: it stands at 1.35 and falls at 1.40 at both levels.
-c/(gamma H) = 0.02 still stands, with a factor of 1.06 by Bishop's circles (searched for this test),
-and falls with its strength divided by 1.10; 0.01 (factor 0.94) falls as it is. A slope that does not
-stand ends the geostatic stage, and the run, with exit code 3; in a storm the run goes on and tells
-`failed`. The balance is asked to 1e-5 of the load: a slope at 1.40 creeps on at 1e-4.
+c/(gamma H) = 0.02 still stands, with a factor of 1.06 by Bishop's circles (bishop.py), and falls with its
+strength divided by 1.10; 0.01 (factor 0.94) falls as it is. A slope that does not stand ends the geostatic
+stage, and the run, with exit code 3; in a storm the run goes on and tells `failed`. The balance is asked
+to 1e-5 of the load: a slope at 1.40 creeps on at 1e-4.
 """
 
 import math
@@ -15,6 +15,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
+from bishop import factor_of_slope  # noqa: E402
 from talus_case import Case  # noqa: E402
 
 case = Case(
@@ -22,9 +23,11 @@ case = Case(
     id="S1 bracket",
     title="which slopes of Griffiths & Lane (1999) example 1 stand, and which fall",
     error="none",
-    reference="Bishop & Morgenstern's charts: 1.380; finite elements of Griffiths & Lane: in (1.35, 1.40]",
+    reference="Bishop & Morgenstern's charts: 1.380; finite elements of Griffiths & Lane: in (1.35, 1.40]; "
+    "Bishop 1955, with the circles searched by bishop.py",
 )
 TWO = "levels = 2\n  length = 1.4"
+UNIT_WEIGHT, HEIGHT, FRICTION = 20.0e3, 10.0, 20.0
 
 
 def run(ratio, factor, levels, stands):
@@ -52,6 +55,20 @@ def run(ratio, factor, levels, stands):
     return history["maximum_displacement"][gravity].max()
 
 
+def bishop(ratio):
+    return factor_of_slope(ratio * UNIT_WEIGHT * HEIGHT, FRICTION, HEIGHT, 2.0, UNIT_WEIGHT)[0]
+
+
+def reduced(ratio):
+    """Factor of safety of a slope with this c/(gamma H) by strength reduction."""
+    result = case.run(
+        "../factor_of_safety/slope.nml",
+        [("cohesion = 10.0e3", f"cohesion = {ratio * UNIT_WEIGHT * HEIGHT}")],
+        name=f"reduced_{ratio}",
+    )
+    return float(result.summary["factor_of_safety"])
+
+
 curves = {}
 for name, levels, mark in (("one level", "levels = 1", "C0o-"), ("two levels", TWO, "C1s-")):
     factors = (1.0, 1.2, 1.3, 1.35, 1.40, 1.45) if case.full else (1.0, 1.35, 1.40)
@@ -72,4 +89,39 @@ case.picture(
     "Largest displacement, E u/(gamma H²) [-]",
     curves,
 )
+
+RATIO = 0.02
+circle = bishop(RATIO)
+factor = reduced(RATIO)
+case.target(
+    "c/(gamma H) = 0.02 falls: its factor of safety", factor, 1.0, "issue 2, part 10", held=(1.0, circle)
+)
+case.note(
+    f"Issue 2 lets the slope of example 1 fall at c/(gamma H) = 0.02. TALUS finds a factor of safety of "
+    f"{factor:.3f} there, and Bishop's circles {circle:.3f} (tests/verify/slope_stability/bishop.py): two "
+    f"methods agree that it stands. It falls at 0.01, where the circles give {bishop(0.01):.3f}."
+)
+case.check_true("by Bishop's circles it stands, and 0.01 falls", bishop(0.01) < 1.0 < circle)
+
+if case.full:
+    case.check("Bishop's circles for 0.05, over the charts", abs(bishop(0.05) / 1.380 - 1.0), 0.005, "1.380")
+    factors = {ratio: reduced(ratio) for ratio in (0.035, 0.05)} | {RATIO: factor}
+    for ratio, found in factors.items():
+        case.target(
+            f"c/(gamma H) = {ratio}: factor of safety over that of Bishop's circles, distance from 1",
+            abs(found / bishop(ratio) - 1.0),
+            0.02,
+            "limit equilibrium itself is good to a few per cent; h = 0.45 m, bracket 0.01",
+        )
+    ratios = np.linspace(0.01, 0.05, 9)
+    case.picture(
+        "factor",
+        "c/(gamma H) [-]",
+        "factor of safety [-]",
+        {
+            "Bishop's circles": (ratios, [bishop(ratio) for ratio in ratios]),
+            "TALUS, strength reduction, h = 0.45 m": (list(factors), list(factors.values()), "o"),
+            "stands above": (ratios[[0, -1]], [1.0, 1.0], "k:"),
+        },
+    )
 sys.exit(case.verdict())

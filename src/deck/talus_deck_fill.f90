@@ -262,6 +262,7 @@ contains
     call get(store, s, 'after_failure', stage%after_failure)
     call get(store, s, 'only_after_failure', stage%only_after_failure)
     call get(store, s, 'rest_velocity', stage%rest_velocity)
+    call get(store, s, 'spin', stage%spin)
     call get(store, s, 'reset_displacement', stage%reset_displacement)
     call get(store, s, 'snapshots', stage%snapshots)
   end subroutine fill_stage

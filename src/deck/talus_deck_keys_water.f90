@@ -166,6 +166,8 @@ contains
     call key(t, 'rest_velocity', 'real', 'm/s', '0', '[0, 100]', &
              'Largest velocity that counts as rest and ends the stage; 0: run to the end.', &
              'kind=dynamic')
+    call key(t, 'spin', 'real', 'rad/s', '0', '[-1e3, 1e3]', &
+             'Angular velocity about its centre of mass with which the body starts.', 'kind=dynamic')
     call key(t, 'reset_displacement', 'logical', '', '~.true. if geostatic, else .false.', '', &
              'Set displacement and plastic strain to zero at the end of the stage.')
     call key(t, 'snapshots', 'integer', '', '10', '[0, 100000]', &

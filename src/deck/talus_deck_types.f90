@@ -112,6 +112,7 @@ module talus_deck_types
     character(:), allocatable :: after_failure
     logical :: only_after_failure
     real(dp) :: rest_velocity
+    real(dp) :: spin
     logical :: reset_displacement
     integer :: snapshots
   end type stage_t

@@ -127,9 +127,22 @@ contains
         state%v = 0.0_dp
         state%acceleration = 0.0_dp
       end if
+      if (abs(stage%spin) > 0.0_dp) state%v = state%v + spinning( &
+        session%disc%mesh%x + state%u, state%mass, stage%spin)
       if (stage%kind == 'dynamic') state%v = merge(conditions%given, state%v, conditions%held)
     end associate
   end subroutine start_motion
+
+  !> Velocities of a body that turns about its centre of mass [m/s], (2,n).
+  pure function spinning(place, mass, spin) result(v)
+    real(dp), intent(in) :: place(:,:) !! [m], (2,n)
+    real(dp), intent(in) :: mass(:)    !! [kg/m], (n)
+    real(dp), intent(in) :: spin       !! anticlockwise positive [rad/s]
+    real(dp) :: v(2, size(mass))
+
+    v(1, :) = -spin*(place(2, :) - sum(mass*place(2, :))/sum(mass))
+    v(2, :) = spin*(place(1, :) - sum(mass*place(1, :))/sum(mass))
+  end function spinning
 
   !> Weight of soil and water now, and tractions.
   subroutine take_load(session)
@@ -268,7 +281,7 @@ contains
     logical, intent(out) :: stands
     type(status_t), intent(inout) :: status
     type(relax_t) :: outcome
-    real(dp) :: moved_max
+    real(dp) :: moved_max, stable
 
     stands = .true.
     if (stage%solve /= 'soil') call move_water(session, stage, step)
@@ -282,11 +295,13 @@ contains
       session%work)
     moved_max = huge(1.0_dp)
     if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
+    stable = session%motion%step
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
                stage%steps_max, moved_max, step, session%state, session%work, outcome)
     call timer_stop(session%timer, 'soil')
     ! Soil that turns inside out while it looks for equilibrium has found none.
     stands = outcome%outcome == relax_balanced
+    if (.not. stands) session%motion%step = stable
     if (outcome%outcome == relax_broken .and. &
         (outcome%failed - 1)/session%disc%n /= soil_inverted) &
       call fail(session, outcome%failed, status)

@@ -71,12 +71,15 @@ contains
     type(reduction_t), intent(inout) :: found
     integer, intent(out) :: failed !! 0, or the node whose numbers failed
     type(relax_t) :: outcome
+    real(dp) :: stable
 
     failed = 0
+    stable = session%motion%step
     session%motion%viscous = 0.0_dp
     call relax(session%disc, reduced_ground(session%ground, session%factor), session%conditions, &
                session%motion, stage%tolerance, stage%steps_max, found%moved_max, 0.0_dp, &
                session%state, session%work, outcome)
+    session%motion%step = stable
     found%trials = found%trials + 1
     session%stands = outcome%outcome == relax_balanced
     if (session%stands) then

@@ -15,12 +15,14 @@ module talus_objective
 contains
 
   !> Strain increment and exact rotation over a step, from h = (F_new - F_old) F_mid^-1:
-  !! the symmetric part is the strain increment, the skew part w gives
-  !! Q = (1 - w/2)^-1 (1 + w/2), which is orthogonal for a step of any size.
+  !! the symmetric part is the strain increment in the middle of the step, the skew part w gives
+  !! Q = (1 - w/2)^-1 (1 + w/2), which is orthogonal for a step of any size. The increment is turned
+  !! on by the other half of the rotation: left where it is, it makes the rule first order in steps
+  !! that turn and strain (Simo & Hughes 1998, section 8.3).
   pure subroutine objective_increment(f_old, f_new, dstrain, rotation, det_new, ierr)
     real(dp), intent(in) :: f_old(4)      !! deformation gradient before the step [-]
     real(dp), intent(in) :: f_new(4)      !! deformation gradient after the step [-]
-    real(dp), intent(out) :: dstrain(4)   !! strain increment [-], tension +, zz = 0
+    real(dp), intent(out) :: dstrain(4)   !! strain increment at the end [-], tension +, zz = 0
     real(dp), intent(out) :: rotation(2)  !! cosine and sine of the rotation of the step [-]
     real(dp), intent(out) :: det_new      !! det F_new [-]
     integer, intent(out) :: ierr          !! 0, or 1 when det F_mid or det F_new is not positive
@@ -38,12 +40,12 @@ contains
     integer, intent(in) :: n
     real(dp), intent(in) :: f_old(4,n)      !! deformation gradient before the step [-]
     real(dp), intent(in) :: f_new(4,n)      !! deformation gradient after the step [-]
-    real(dp), intent(out) :: dstrain(4,n)   !! strain increment [-], tension +, zz = 0
+    real(dp), intent(out) :: dstrain(4,n)   !! strain increment at the end [-], tension +, zz = 0
     real(dp), intent(out) :: rotation(2,n)  !! cosine and sine of the rotation of the step [-]
     real(dp), intent(out) :: det_mid(n)     !! det F_mid [-], or 0
     real(dp), intent(out) :: det_old(n)     !! det F_old [-]
     real(dp), intent(out) :: det_new(n)     !! det F_new [-]
-    real(dp) :: m11, m12, m21, m22, d11, d12, d21, d22, inv, h12, h21, a, a2
+    real(dp) :: m11, m12, m21, m22, d11, d12, d21, d22, inv, xx, yy, xy, h12, h21, a, a2, turned
     integer :: i
 
     do i = 1, n
@@ -66,13 +68,18 @@ contains
       inv = det_mid(i)/max(det_mid(i)*det_mid(i), tiny(1.0_dp))
       h12 = (d12*m11 - d11*m12)*inv
       h21 = (d21*m22 - d22*m21)*inv
-      dstrain(1, i) = (d11*m22 - d12*m21)*inv
-      dstrain(2, i) = (d22*m11 - d21*m12)*inv
-      dstrain(3, i) = 0.0_dp
-      dstrain(4, i) = 0.5_dp*(h12 + h21)
+      xx = (d11*m22 - d12*m21)*inv
+      yy = (d22*m11 - d21*m12)*inv
+      xy = 0.5_dp*(h12 + h21)
       a = 0.25_dp*(h21 - h12)
       a2 = a*a
       inv = 1.0_dp/(1.0_dp + a2)
+      ! Half the rotation has the cosine sqrt(inv) and the sine a sqrt(inv): only squares enter.
+      turned = inv*(a2*(yy - xx) - 2.0_dp*a*xy)
+      dstrain(1, i) = xx + turned
+      dstrain(2, i) = yy - turned
+      dstrain(3, i) = 0.0_dp
+      dstrain(4, i) = xy + inv*(a*(xx - yy) - 2.0_dp*a2*xy)
       rotation(1, i) = (1.0_dp - a2)*inv
       rotation(2, i) = 2.0_dp*a*inv
     end do

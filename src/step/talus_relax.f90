@@ -25,6 +25,8 @@ module talus_relax
   !> Steps between two looks at the stable step where pore water carries load: soil that fills with
   !> water becomes stiff.
   integer, parameter :: refresh_every = 250
+  !> The step is found again when the soil has moved by this part of the node spacing since.
+  real(dp), parameter :: refresh_travel = 0.05_dp
 
   type :: relax_t
     integer :: outcome = relax_balanced !! one of relax_*
@@ -109,6 +111,7 @@ contains
     ! Local damping adds up to its fraction to a force that opposes the motion.
     if (stable > 0.0_dp) &
       motion%step = min(motion%step, motion%safety*stable/sqrt(1.0_dp + motion%local))
+    motion%place = state%u
   end subroutine motion_refresh
 
   !> The same while the soil moves. The velocity half a step ahead becomes that of the shorter step,
@@ -128,7 +131,8 @@ contains
   end subroutine motion_shorten
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
-  !> moved by more than `moved_max`, or `steps_max` steps were taken. Driven nodes first travel as
+  !> moved by more than `moved_max`, or `steps_max` steps were taken. Soil that is squeezed thin needs a
+  !> shorter step: who takes the motion back restores `motion%step`, too. Driven nodes first travel as
   !> far as their velocity takes them in `travel` seconds, and are then held.
   subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, travel, state, &
                    work, outcome)
@@ -144,10 +148,12 @@ contains
     type(work_t), intent(inout) :: work
     type(relax_t), intent(out) :: outcome
     real(dp), allocatable :: u_start(:,:), force(:,:)
+    real(dp) :: spacing, travelled
     integer :: ramp
     logical :: travels
 
     u_start = state%u
+    spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
     ramp = 0
     if (conditions%driven .and. abs(travel) > 0.0_dp) ramp = min(ramp_steps(disc), steps_max)
     if (ramp > 0) call soil_force(disc, ground, motion%coupled, state, work, outcome%failed)
@@ -176,7 +182,9 @@ contains
         outcome%outcome = relax_moving
         return
       end if
-      if (motion%stiffens .and. modulo(outcome%steps, refresh_every) == 0) &
+      travelled = largest_motion(disc%n, state%u, motion%place)
+      if (travelled > refresh_travel*spacing .or. &
+          (motion%stiffens .and. modulo(outcome%steps, refresh_every) == 0)) &
         call motion_shorten(disc, ground, state, motion, work)
     end do
   end subroutine relax

@@ -44,6 +44,7 @@ module talus_soil_step
     logical :: stiffens = .false.          !! and that may stiffen the soil
     logical :: consistent = .false.        !! mass is consistent with the strain, else lumped
     real(dp), allocatable :: mode(:,:)     !! fastest mode when last looked for, (2,n)
+    real(dp), allocatable :: place(:,:)    !! displacement when last looked for [m], (2,n)
     real(dp), allocatable :: mobility(:,:) !! one over mass; 0 where held [m/kg], (2,n)
     real(dp), allocatable :: pair_mass(:)  !! of each edge at both ends, if consistent [kg/m]
   end type motion_t

@@ -28,6 +28,7 @@ contains
         call check_where(store, at(i), boundary, deck, messages)
         call check_stage_names(store, at(i), boundary, deck, messages)
         call check_motion(store, at(i), boundary, messages)
+        call check_floor(store, at(i), boundary, deck, messages)
         call check_water(store, at(i), boundary, deck, messages)
         call check_effect(store, at(i), boundary, messages)
         call check_repeated(store, at(i), i, deck, messages)
@@ -107,6 +108,23 @@ contains
     end associate
   end subroutine check_motion
 
+  !> Soil lands on a floor in real time only.
+  subroutine check_floor(store, section, boundary, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: i
+
+    if (.not. deck_given(boundary%floor)) return
+    do i = 1, size(deck%stage)
+      if (deck%stage(i)%kind == 'dynamic' .and. deck_acts_in(boundary, deck%stage(i)%name)) return
+    end do
+    call complain(store, section, 'floor', 'no stage in which it acts is dynamic', messages, &
+                  'a floor with a stage of kind = ''dynamic''')
+  end subroutine check_floor
+
   subroutine check_water(store, section, boundary, deck, messages)
     type(store_t), intent(in) :: store
     integer, intent(in) :: section
@@ -174,7 +192,7 @@ contains
 
     if (boundary%displacement /= 'free' .or. boundary%water /= 'none') return
     if (deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y) .or. &
-        size(boundary%velocity_gradient) > 0) return
+        size(boundary%velocity_gradient) > 0 .or. deck_given(boundary%floor)) return
     loads = [boundary%traction_x, boundary%traction_y, boundary%pressure]
     if (.not. all(deck_given(loads))) return
     if (maxval(abs(loads)) > 0.0_dp) return

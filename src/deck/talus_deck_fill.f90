@@ -226,6 +226,7 @@ contains
     call get(store, s, 'velocity_gradient', boundary%velocity_gradient)
     call get(store, s, 'centre_x', boundary%centre_x)
     call get(store, s, 'centre_y', boundary%centre_y)
+    call get(store, s, 'floor', boundary%floor)
     call get(store, s, 'traction_x', boundary%traction_x)
     call get(store, s, 'traction_y', boundary%traction_y)
     call get(store, s, 'pressure', boundary%pressure)

@@ -93,6 +93,9 @@ contains
              'x of the fixed point of velocity_gradient.')
     call key(t, 'centre_y', 'real', 'm', '0', '[-1e7, 1e7]', &
              'y of the fixed point of velocity_gradient.')
+    call key(t, 'floor', 'real', 'm', '', '[-1e7, 1e7]', &
+             'Elevation y of rigid, rough ground: in a dynamic stage nodes that come down to it '// &
+             'stay there; absent: none.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
     call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
         'Traction along y, upward positive.')

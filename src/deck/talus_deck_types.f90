@@ -94,6 +94,7 @@ module talus_deck_types
     real(dp) :: velocity_x, velocity_y, traction_x, traction_y, pressure
     real(dp), allocatable :: velocity_gradient(:) !! xx, xy, yx, yy; size 0 when absent
     real(dp) :: centre_x, centre_y
+    real(dp) :: floor
     character(:), allocatable :: water
     real(dp) :: head, flux, rain
     character(:), allocatable :: hydrograph    !! path that opens from the working folder

@@ -8,8 +8,8 @@ module talus_setup_conditions
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
-    conditions_deform, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_t, &
-    inlet_none, inlet_head, inlet_flux, inlet_rain, inlet_seepage
+    conditions_deform, conditions_floor, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, &
+    inlets_t, inlet_none, inlet_head, inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_t, rain_constant, rain_read
   use talus_steady, only: steady_heads
   implicit none
@@ -93,6 +93,7 @@ contains
       call conditions_hold(conditions, set, 2, boundary%velocity_y)
     if (size(boundary%velocity_gradient) == 4) call conditions_deform(conditions, set, &
       boundary%velocity_gradient, [boundary%centre_x, boundary%centre_y])
+    if (deck_given(boundary%floor)) call conditions_floor(conditions, set, boundary%floor)
   end subroutine add_supports
 
   !> Where water enters and leaves.

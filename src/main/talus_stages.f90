@@ -12,6 +12,7 @@ module talus_stages
   use talus_setup_ground, only: ground_intact
   use talus_setup_conditions, only: setup_conditions
   use talus_conditions, only: conditions_follow
+  use talus_floor, only: floor_land
   use talus_initial, only: initial_water, weight_masses, weight_load
   use talus_soil_step, only: soil_step, soil_force
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
@@ -365,6 +366,8 @@ contains
       end if
       if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
                                                        session%state)
+      if (allocated(session%conditions%floor)) call floor_land(session%conditions%floor, &
+        session%disc%mesh%x, session%motion, session%state)
       done = done + session%motion%step
       since_water = since_water + session%motion%step
       session%state%time = session%state%time + session%motion%step

@@ -10,7 +10,7 @@ module talus_conditions
   implicit none
   private
   public :: conditions_t, inlets_t, conditions_allocate, conditions_hold, conditions_load
-  public :: conditions_deform, conditions_follow
+  public :: conditions_deform, conditions_follow, conditions_floor, floor_t
   public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch
 
   integer, parameter, public :: inlet_none = 0, inlet_head = 1, inlet_flux = 2, inlet_rain = 3, &
@@ -27,6 +27,12 @@ module talus_conditions
     type(rain_t), allocatable :: rains(:)
   end type inlets_t
 
+  !> Ground that nodes may land on; a node may be named more than once.
+  type :: floor_t
+    integer, allocatable :: node(:)   !! (m)
+    real(dp), allocatable :: level(:) !! elevation y [m], (m)
+  end type floor_t
+
   type :: conditions_t
     logical, allocatable :: held(:,:)    !! displacement is prescribed, (2,n)
     real(dp), allocatable :: given(:,:)  !! prescribed velocity [m/s], (2,n)
@@ -36,6 +42,7 @@ module talus_conditions
     integer, allocatable :: motion(:)      !! number of a node's motion, 0 for none, (n)
     real(dp), allocatable :: gradient(:,:) !! velocity gradient xx, xy, yx, yy [1/s], (4,motions)
     real(dp), allocatable :: centre(:,:)   !! fixed point [m], (2,motions)
+    type(floor_t), allocatable :: floor    !! allocated where the stage has one
     type(inlets_t) :: inlets
   end type conditions_t
 
@@ -113,6 +120,21 @@ contains
         x(:, i) - conditions%centre(:, k) + u(:, i), step)
     end do
   end subroutine conditions_follow
+
+  !> Let the nodes of a set land on a floor.
+  pure subroutine conditions_floor(conditions, set, level)
+    type(conditions_t), intent(inout) :: conditions
+    type(boundary_set_t), intent(in) :: set
+    real(dp), intent(in) :: level !! elevation y [m]
+    integer :: i
+
+    if (.not. allocated(conditions%floor)) then
+      allocate (conditions%floor)
+      allocate (conditions%floor%node(0), conditions%floor%level(0))
+    end if
+    conditions%floor%node = [conditions%floor%node, set%node]
+    conditions%floor%level = [conditions%floor%level, (level, i=1, size(set%node))]
+  end subroutine conditions_floor
 
   !> Add tractions to the nodes of a set.
   pure subroutine conditions_load(conditions, set, traction, pressure)

@@ -40,7 +40,7 @@ module talus_state
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
     real(dp), allocatable :: stabilising_lost(:) !! lost there as the soil softened [J/m], (n)
     real(dp), allocatable :: volume_work(:)     !! sum of stored energy dJ [J/m3], (n)
-    real(dp), allocatable :: damped(:)          !! taken by local damping [J/m], (n)
+    real(dp), allocatable :: damped(:)          !! taken by local damping and impacts [J/m], (n)
     real(dp), allocatable :: mass(:)            !! true, with water [kg/m], (n)
     real(dp), allocatable :: load(:,:)          !! weight and tractions [N/m], (2,n)
     real(dp), allocatable :: u_load(:,:)        !! displacement when the load was set [m], (2,n)

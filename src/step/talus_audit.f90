@@ -28,7 +28,7 @@ module talus_audit
     real(dp) :: damage = 0.0_dp        !! dissipated by damage
     real(dp) :: water = 0.0_dp         !! exchanged with the pore water or by swelling
     real(dp) :: stabilisation = 0.0_dp !! stored there, and lost as the soil softened
-    real(dp) :: damping = 0.0_dp       !! taken by local damping
+    real(dp) :: damping = 0.0_dp       !! taken by local damping and by impact on a floor
     real(dp) :: external = 0.0_dp      !! work of weight, tractions and driven nodes
     real(dp) :: motion = 0.0_dp        !! 1/2 m v(n+1/2)^2: only to scale errors at the very start
   end type energies_t

@@ -158,12 +158,12 @@ def print_targets(stories):
     rows = [(s["id"] or s["case"], target) for s in stories for target in s.get("targets", [])]
     if not rows:
         return
-    print(f"\n{'':5s}{'case':10s} {'measured':>10s}  {'wanted':<18s} target")
+    print(f"\n{'':5s}{'case':15s} {'measured':>10s}  {'wanted':<18s} target")
     for id, target in rows:
         low = "" if target["low"] is None else f"{number(target['low'])} to "
         wanted = f"{low}{number(target['limit'])}" if low else f"<= {number(target['limit'])}"
         state = "ok" if target["met"] else "MISS"
-        print(f"{state:4s} {id:10.10s} {number(target['value']):>10s}  {wanted:<18s} {target['what']}")
+        print(f"{state:4s} {id:15.15s} {number(target['value']):>10s}  {wanted:<18s} {target['what']}")
     missed = sum(not target["met"] for _, target in rows)
     print(f"{len(rows)} targets, {missed} not met")
 

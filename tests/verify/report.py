@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 
 from case_list import report_order
-from report_pictures import draw_pictures
+from report_pictures import ROUND_OFF, draw_pictures
 from report_text import report_text
 
 STUDY_COLUMNS = (
@@ -90,7 +90,10 @@ def load_run(output):
 
 
 def add_orders(runs):
-    """Observed order of each row against the next coarser one of its series, where there is one."""
+    """Observed order of each row against the next coarser one of its series, where there is one.
+
+    Round-off has no order.
+    """
     for row in runs:
         coarser = [
             other
@@ -100,7 +103,7 @@ def add_orders(runs):
         row["order"] = None
         if coarser:
             other = min(coarser, key=lambda r: r["spacing"])
-            if row["error"] > 0 and other["error"] > 0:
+            if row["error"] > 0 and other["error"] > ROUND_OFF:
                 ratio = math.log(other["spacing"] / row["spacing"])
                 row["order"] = math.log(other["error"] / row["error"]) / ratio
 

@@ -27,7 +27,7 @@ def draw_pictures(story, folder):
     made = []
     if story["runs"]:
         made.append(draw_work(story, folder))
-        if len({row["spacing"] for row in story["runs"]}) > 2:
+        if any(len({row["spacing"] for row in rows}) > 2 for rows in series_of(story["runs"]).values()):
             made.append(draw_convergence(story, folder))
     made += [draw_curves(story, picture, folder) for picture in story["pictures"]]
     return made
@@ -120,9 +120,14 @@ def draw_work(story, folder):
 def draw_convergence(story, folder):
     """Error over node spacing, with slopes of first and second order to compare with."""
     figure, axes = plt.subplots(figsize=SIZE)
-    ours = {title: (rows, style) for (title, rows), style in zip(series_of(story["runs"]).items(), styles())}
+    series = {
+        title: rows
+        for title, rows in series_of(story["runs"]).items()
+        if len({row["spacing"] for row in rows}) > 1
+    }
+    ours = {title: (rows, style) for (title, rows), style in zip(series.items(), styles())}
     shown = draw_points(axes, ours, "spacing")
-    first = sorted((r["spacing"], r["error"]) for r in next(iter(series_of(story["runs"]).values())))
+    first = sorted((r["spacing"], r["error"]) for r in next(iter(series.values())))
     spacing, error = first[len(first) // 2]
     if error > ROUND_OFF:
         ends = np.array([min(r["spacing"] for r in shown), max(r["spacing"] for r in shown)])

@@ -8,9 +8,9 @@ from case_list import GROUPS, group_of
 
 INTRODUCTION = """\
 Written by `./talus verify`, which runs every case of [verify]({tests}/verify) and [hard]({tests}/hard)
-with the real program, at all of its spacings, and compares with exact or published answers. `./talus
-verify H3` (or `celia`, `hard4`, `hard`) runs a few and updates theirs; `./talus test` runs a quick
-subset, without a report. Limits are part of the cases; nothing is fitted to pass. Tables:
+with the real program, at all of its spacings, and compares with exact or published answers.
+`./talus verify H3` (or `celia`, `hard4`, `hard`) runs a few and updates theirs; `./talus test` runs a
+quick subset, without a report. Limits are part of the cases; nothing is fitted to pass. Tables:
 [studies.csv](report/studies.csv), [targets.csv](report/targets.csv); all that was measured: the JSON
 files in [report](report)."""
 
@@ -63,6 +63,7 @@ def anchor(story):
 
 def heading(story):
     words = story["title"] or story["case"].replace("_", " ")
+    words = words[:1].upper() + words[1:]
     text = f"{story['id']}: {words}" if re.search(r"\d", story["id"]) else words
     return text[:1].upper() + text[1:]
 
@@ -185,7 +186,7 @@ def study_table(story):
             number(r["spacing"]),
             number(r["error"]),
             "-" if r["order"] is None else f"{r['order']:.2f}",
-            number(r["seconds"]) + (f" (median of {r['repeats']})" if r.get("repeats", 1) > 1 else ""),
+            f"{r['seconds']:.3g}" + (f" (median of {r['repeats']})" if r.get("repeats", 1) > 1 else ""),
             "-" if r["node_steps_per_second"] is None else f"{r['node_steps_per_second'] / 1e6:.2f}",
             r["smoothing"],
             number(r["stabilisation"]),
@@ -208,8 +209,11 @@ def case_text(story, pictures, tests):
     """One case: what it is, its reference, tables, targets, remedies, notes and pictures."""
     folder = f"{tests}/{story['kind']}/{story['case']}"
     facts = [f"Case: [{story['kind']}/{story['case']}]({folder})"]
-    facts += [f"reference: {story['reference'].rstrip('.')}"] if story["reference"] else []
-    facts += [f"error: {story['error'].rstrip('.')}"] if story["error"] else []
+    facts += [
+        f"{name}: {story[name].rstrip('.')}"
+        for name in ("reference", "error")
+        if story[name] not in ("", "none")
+    ]
     took = f"{story.get('case_seconds', 0.0):g} s on {story.get('date', 'an unknown date')}"
     parts = [f"### {heading(story)}", "", about(story["about"]), "", "; ".join(facts) + f". It took {took}."]
     if story["trouble"]:

@@ -76,7 +76,7 @@ def run_case(case, program, scratch, running):
     if file.exists():
         story = json.loads(file.read_text())
     else:
-        last = log.read_text(errors="replace").strip().splitlines()[-3:]
+        last = log.read_text(errors="replace").strip().splitlines()[-2:]
         trouble = trouble or f"ended with exit code {code} before its verdict: {' / '.join(last)}"
         story = {"case": case.name, "id": case.id, "title": "", "failures": 1}
     return {

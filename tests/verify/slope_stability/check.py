@@ -86,7 +86,7 @@ run(0.01, 1.0, "levels = 1", False)
 case.picture(
     "Displacement under gravity; what does not stand was stopped",
     "Factor that divides the strength [-]",
-    "Largest displacement, E u/(gamma H²) [-]",
+    "Displacement E u/(gamma H²) [-]",
     curves,
 )
 

@@ -14,6 +14,7 @@ module talus_check
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_initial, only: weight_load
   use talus_audit, only: audit_load
+  use talus_coupling, only: coupling_needed
   use talus_timer, only: timer_now, timer_seconds
   use talus_cost, only: cost_t, cost_of
   use talus_spectrum, only: spectrum_frequencies, spectrum_most_nodes
@@ -149,7 +150,8 @@ contains
       if (status_failed(status)) return
       estimate = 0.0_dp
       if (stage%solve /= 'seepage') then
-        session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
+        session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
+          .not. (stage%kind == 'storm' .and. coupling_needed(session%ground))
         session%motion%local = stage%damping
         session%motion%consistent = stage%mass == 'consistent'
         call motion_prepare(session%disc, session%ground, session%conditions, session%state, &

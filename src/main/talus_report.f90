@@ -114,8 +114,8 @@ contains
       call summary_set(summary, 'maximum_displacement', session%greatest_displacement)
       call summary_set(summary, 'water_error', session%worst_water_error)
       call summary_set(summary, 'energy_error', session%worst_energy_error)
-      if (session%staggering > 0.0_dp) call summary_set(summary, 'staggering_number', &
-                                                        session%staggering)
+      if (session%coupling_error >= 0.0_dp) call summary_set(summary, 'coupling_error', &
+                                                             session%coupling_error)
       call summary_set(summary, 'failed', session%failed)
       if (session%failed) then
         call summary_set(summary, 'trigger_time', session%trigger_time)

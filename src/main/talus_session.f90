@@ -53,7 +53,8 @@ module talus_session
     real(dp) :: factor = 1.0_dp             !! that divides the strength in the present trial
     logical :: stands = .true.              !! outcome of the latest trial of a factor
     type(reduction_t), allocatable :: reduction(:) !! of each stage of strength reduction so far
-    real(dp) :: staggering = 0.0_dp         !! greatest audit_staggering of all storm steps
+    logical :: joint = .false.              !! water and soil of the stage agree in each step
+    real(dp) :: coupling_error = -1.0_dp    !! greatest coupling_left of all storm steps; -1: none
     real(dp) :: worst_water_error = 0.0_dp  !! over all storms
     real(dp) :: worst_energy_error = 0.0_dp !! over all dynamic stages
     real(dp) :: greatest_displacement = 0.0_dp !! since displacements were last reset [m]

@@ -18,9 +18,9 @@ module talus_stages
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
     relax_balanced, relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
-  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, &
-    audit_staggering, &
-    energies_t
+  use talus_coupling, only: coupling_t, coupling_needed, coupling_start, coupling_give, &
+    coupling_take, coupling_left, coupling_done, coupling_turns
+  use talus_audit, only: audit_energies, audit_load, audit_driven, audit_stored_water, energies_t
   use talus_soil_law, only: soil_inverted
   use talus_strength_reduction, only: strength_reduction
   use talus_record, only: record_line, record_snapshot, record_restart, record_last_good
@@ -92,8 +92,11 @@ contains
       if (stage%solve /= 'seepage') then
         session%motion%local = stage%damping
         session%motion%viscous = 0.0_dp
-        session%motion%coupled = session%ground%wet .and. stage%solve == 'both'
         session%motion%consistent = stage%mass == 'consistent'
+        session%joint = stage%kind == 'storm' .and. stage%solve == 'both' .and. &
+          coupling_needed(session%ground)
+        session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
+          .not. session%joint
         call take_load(session)
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
@@ -281,24 +284,51 @@ contains
     real(dp), intent(in) :: step !! [s]
     logical, intent(out) :: stands
     type(status_t), intent(inout) :: status
+    type(coupling_t) :: coupling
+    real(dp) :: left, before
+    integer :: turn
+
+    stands = .true.
+    if (.not. session%joint) then
+      if (stage%solve /= 'soil') call move_water(session, stage, step)
+      session%state%time = session%state%time + step
+      if (stage%solve /= 'seepage') call find_balance(session, stage, step, stands, status)
+      return
+    end if
+    call coupling_start(coupling, session%state)
+    left = huge(left)
+    do turn = 1, coupling_turns
+      call coupling_give(coupling, session%disc, session%ground, session%state)
+      call move_water(session, stage, step)
+      call coupling_take(coupling, session%state)
+      session%state%time = session%state%time + step
+      call find_balance(session, stage, merge(step, 0.0_dp, turn == 1), stands, status)
+      if (.not. stands .or. status_failed(status)) return
+      before = left
+      left = coupling_left(coupling, session%disc, session%ground, session%state)
+      if (coupling_done(before, left)) exit
+      if (turn < coupling_turns) session%state%time = session%state%time - step
+    end do
+    session%coupling_error = max(session%coupling_error, left)
+  end subroutine storm_step
+
+  !> Relax under the load of the moment. `stands` tells whether the soil found its equilibrium.
+  subroutine find_balance(session, stage, travel, stands, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: travel !! time that driven nodes move on [s]
+    logical, intent(out) :: stands
+    type(status_t), intent(inout) :: status
     type(relax_t) :: outcome
     real(dp) :: moved_max, stable
 
-    stands = .true.
-    if (stage%solve /= 'soil') call move_water(session, stage, step)
-    session%state%time = session%state%time + step
-    if (stage%solve == 'seepage') return
     call take_load(session)
     call timer_start(session%timer, 'soil')
-    ! Soil that the storm has filled with water is stiffer than before.
-    if (session%motion%stiffens) call motion_prepare(session%disc, session%ground, &
-      session%conditions, session%state, stage%mass_scaling, stage%step_safety, session%motion, &
-      session%work)
     moved_max = huge(1.0_dp)
     if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
     stable = session%motion%step
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
-               stage%steps_max, moved_max, step, session%state, session%work, outcome)
+               stage%steps_max, moved_max, travel, session%state, session%work, outcome)
     call timer_stop(session%timer, 'soil')
     ! Soil that turns inside out while it looks for equilibrium has found none.
     stands = outcome%outcome == relax_balanced
@@ -306,7 +336,7 @@ contains
     if (outcome%outcome == relax_broken .and. &
         (outcome%failed - 1)/session%disc%n /= soil_inverted) &
       call fail(session, outcome%failed, status)
-  end subroutine storm_step
+  end subroutine find_balance
 
   !> Move the water for a time, with the soil at rest in its present shape.
   subroutine move_water(session, stage, step)
@@ -317,8 +347,6 @@ contains
     call timer_start(session%timer, 'seepage')
     if (stage%solve == 'both') call seepage_shape(session%seepage, session%disc, session%ground, &
       session%conditions%inlets, session%state)
-    if (stage%solve == 'both') session%staggering = max(session%staggering, &
-      audit_staggering(session%disc, session%ground, session%state, step))
     call seepage_advance(session%seepage, session%disc, session%ground, session%conditions%inlets, &
       session%state%time - session%stage_start, step, session%state)
     call timer_stop(session%timer, 'seepage')

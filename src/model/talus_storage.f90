@@ -9,7 +9,10 @@ module talus_storage
   use talus_water_curve, only: water_curve_t, curve_at_pressure, curve_at_saturation
   implicit none
   private
-  public :: storage_content, storage_invert, storage_capacity
+  public :: storage_content, storage_invert, storage_invert_giving, storage_capacity
+
+  !> Iterations of storage_invert_giving; its brackets shrink in each, and a few suffice.
+  integer, parameter :: most_iterations = 100
 
 contains
 
@@ -70,4 +73,46 @@ contains
       capacity = storage_capacity(curve, storage, pore, jacobian, pressure, slope)
     end if
   end subroutine storage_invert
+
+  !> The same where the pores widen with the pressure too: w = storage_content + give (p - anchor)
+  !> (src/THEORY.md (5.4a)), by Newton's method between brackets. `pressure` is the first guess.
+  pure subroutine storage_invert_giving(curve, storage, pore, jacobian, give, anchor, content, &
+    pressure, saturation, ratio, potential, capacity)
+    type(water_curve_t), intent(in) :: curve
+    real(dp), intent(in) :: storage     !! S_s [1/Pa]
+    real(dp), intent(in) :: pore        !! pore volume per reference area at the anchor [-]
+    real(dp), intent(in) :: jacobian    !! J there [-]
+    real(dp), intent(in) :: give        !! water that wider pores take up [1/Pa], > 0
+    real(dp), intent(in) :: anchor      !! pressure of the shape as it is [Pa]
+    real(dp), intent(in) :: content     !! w [m3/m2]
+    real(dp), intent(inout) :: pressure !! p_w [Pa]
+    real(dp), intent(out) :: saturation !! S_r [-]
+    real(dp), intent(out) :: ratio      !! k_r [-]
+    real(dp), intent(out) :: potential  !! Phi [Pa]
+    real(dp), intent(out) :: capacity   !! dw/dp [1/Pa]
+    real(dp) :: low, high, excess, change, slope
+    integer :: i
+
+    low = -huge(1.0_dp)
+    high = huge(1.0_dp)
+    do i = 1, most_iterations
+      call curve_at_pressure(curve, pressure, saturation, ratio, potential, slope)
+      capacity = storage_capacity(curve, storage, pore, jacobian, pressure, slope) + give
+      excess = pore*saturation + jacobian*storage*max(pressure + curve%entry, 0.0_dp) &
+        + give*(pressure - anchor) - content
+      ! The slope is `give` at least, so the root is no further than this.
+      if (excess > 0.0_dp) then
+        high = min(high, pressure)
+        low = max(low, pressure - excess/give)
+      else
+        low = max(low, pressure)
+        high = min(high, pressure - excess/give)
+      end if
+      change = -excess/capacity
+      if (abs(change) <= 4.0_dp*epsilon(1.0_dp)*max(abs(pressure), abs(anchor), 1.0_dp)) return
+      if (pressure + change < low .or. pressure + change > high) &
+        change = 0.5_dp*(low + high) - pressure
+      pressure = pressure + change
+    end do
+  end subroutine storage_invert_giving
 end module talus_storage

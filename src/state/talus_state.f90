@@ -54,6 +54,8 @@ module talus_state
     real(dp), allocatable :: potential(:)       !! Phi [Pa], (n)
     real(dp), allocatable :: capacity(:)        !! dw/dp [1/Pa], (n)
     real(dp), allocatable :: suction(:)         !! that the stress has seen [Pa], (n)
+    real(dp), allocatable :: give(:)            !! water that wider pores take up [1/Pa], (n)
+    real(dp), allocatable :: anchor(:)          !! pressure of the shape as it is [Pa], (n)
     real(dp), allocatable :: water_work(:)      !! on pore pressure or swelling [J/m3], (n)
     type(water_balance_t) :: water
   end type state_t
@@ -92,6 +94,8 @@ contains
     allocate (state%content(n), state%pressure(n), state%saturation(n), state%ratio(n), &
               state%potential(n), state%capacity(n), state%suction(n), source=0.0_dp)
     allocate (state%jacobian(n), source=1.0_dp)
+    if (any(ground%law%stress == stress_bishop)) &
+      allocate (state%give(n), state%anchor(n), source=0.0_dp)
     if (any(ground%law%stress == stress_bishop) .or. &
         any(ground%law%swelling%kind /= suction_strain_none)) &
       allocate (state%water_work(n), source=0.0_dp)

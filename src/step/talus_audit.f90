@@ -16,8 +16,7 @@ module talus_audit
   use talus_sum, only: sum_blocks, sum_products
   implicit none
   private
-  public :: energies_t, audit_energies, audit_energy_error, audit_stored_water, audit_water_error, &
-    audit_staggering
+  public :: energies_t, audit_energies, audit_energy_error, audit_stored_water, audit_water_error
   public :: audit_load, audit_driven
 
   !> Energies per metre of slope [J/m].
@@ -150,30 +149,6 @@ contains
     error = 0.0_dp
     if (scale > 0.0_dp) error = (sum(change) - work)/scale
   end function audit_energy_error
-
-  !> How far excess pressure spreads in one step of the storm clock, over the mean cell A, where
-  !> soil under Bishop's stress is saturated: k dt/(gamma_w S_s A (1 + S_s M)). Above about 10 the excess
-  !> pressure drains too slowly (src/THEORY.md section 5.6).
-  real(dp) function audit_staggering(disc, ground, state, step) result(number)
-    type(disc_t), intent(in) :: disc
-    type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    real(dp), intent(in) :: step !! [s]
-    real(dp) :: area
-    integer :: i, soil
-
-    number = 0.0_dp
-    area = sum(disc%dual%area)/real(disc%n, dp)
-    do i = 1, disc%n
-      soil = disc%soil(i)
-      if (ground%law(soil)%stress /= stress_bishop .or. state%pressure(i) <= 0.0_dp) cycle
-      associate (elastic => ground%law(soil)%elastic, storage => ground%storage(soil))
-        number = max(number, maxval(ground%conductivity(:, soil))*step &
-          /(ground%unit_weight*storage*area &
-            *(1.0_dp + storage*(elastic%bulk + 4.0_dp/3.0_dp*elastic%shear))))
-      end associate
-    end do
-  end function audit_staggering
 
   !> Water in the soil [m3/m].
   real(dp) function audit_stored_water(disc, state) result(stored)

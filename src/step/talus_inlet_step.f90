@@ -10,7 +10,7 @@ module talus_inlet_step
   use talus_sum, only: sum_add
   use talus_conditions, only: inlets_t, inlet_head, inlet_flux, inlet_rain, inlet_seepage
   use talus_rain, only: rain_total
-  use talus_storage, only: storage_content, storage_invert
+  use talus_cell_water, only: cell_content, cell_invert
   implicit none
   private
   public :: inlets_apply, inlets_heads
@@ -57,10 +57,7 @@ contains
       integer, intent(in) :: i
       real(dp), intent(in) :: pressure
 
-      associate (soil => disc%soil(i), jacobian => state%jacobian(i))
-        held = storage_content(ground%curve(soil), ground%storage(soil), &
-          jacobian - 1.0_dp + ground%porosity(soil), jacobian, pressure)
-      end associate
+      held = cell_content(ground, disc%soil(i), state, i, pressure)
     end function held
 
     subroutine set_pressure(i, pressure)
@@ -99,23 +96,18 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(state_t), intent(inout) :: state
-    real(dp) :: pressure, content, pore
+    real(dp) :: content
     integer :: k
 
     do k = 1, size(inlets%node)
       if (inlets%kind(k) /= inlet_head) cycle
-      associate (i => inlets%node(k), soil => disc%soil(inlets%node(k)), &
-                 jacobian => state%jacobian(inlets%node(k)))
-        pressure = ground%unit_weight*(inlets%value(k) - height(i))
-        pore = jacobian - 1.0_dp + ground%porosity(soil)
-        content = storage_content(ground%curve(soil), ground%storage(soil), pore, jacobian, &
-          pressure)
+      associate (i => inlets%node(k), soil => disc%soil(inlets%node(k)))
+        content = cell_content(ground, soil, state, i, &
+          ground%unit_weight*(inlets%value(k) - height(i)))
         if (.not. abs(content - state%content(i)) > 0.0_dp) cycle
         call book(state%water, (content - state%content(i))*disc%dual%area(i))
         state%content(i) = content
-        call storage_invert(ground%curve(soil), ground%storage(soil), pore, jacobian, content, &
-          state%pressure(i), state%saturation(i), state%ratio(i), state%potential(i), &
-          state%capacity(i))
+        call cell_invert(ground, soil, i, state)
       end associate
     end do
   end subroutine inlets_heads

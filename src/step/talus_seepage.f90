@@ -16,7 +16,7 @@ module talus_seepage
   use talus_state, only: state_t, water_balance_t
   use talus_conditions, only: inlets_t, inlet_flux, inlet_rain
   use talus_rain, only: rain_total, rain_next_change
-  use talus_storage, only: storage_invert
+  use talus_cell_water, only: cell_invert
   use talus_darcy, only: seepage_t, seepage_shape, seepage_hold, face_fluxes, cell_outflow, &
     seepage_step_limit, seepage_velocity
   use talus_seepage_newton, only: newton_t, newton_prepare, newton_solve, newton_cost
@@ -43,15 +43,11 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(state_t), intent(inout) :: state
-    integer :: i, soil
+    integer :: i
 
-    !$omp parallel do default(none) shared(disc, ground, state) private(i, soil) schedule(static)
+    !$omp parallel do default(none) shared(disc, ground, state) private(i) schedule(static)
     do i = 1, disc%n
-      soil = disc%soil(i)
-      call storage_invert(ground%curve(soil), ground%storage(soil), &
-        state%jacobian(i) - 1.0_dp + ground%porosity(soil), state%jacobian(i), state%content(i), &
-        state%pressure(i), state%saturation(i), state%ratio(i), state%potential(i), &
-        state%capacity(i))
+      call cell_invert(ground, disc%soil(i), i, state)
     end do
     !$omp end parallel do
   end subroutine seepage_invert

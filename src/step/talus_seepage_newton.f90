@@ -312,6 +312,10 @@ contains
         state%capacity(i) = storage_capacity(ground%curve(soil), ground%storage(soil), pore, &
           jacobian, state%pressure(i), state%capacity(i))
       end associate
+      if (allocated(state%give)) then
+        content = content + state%give(i)*(state%pressure(i) - state%anchor(i))
+        state%capacity(i) = state%capacity(i) + state%give(i)
+      end if
       newton%residual(i) = disc%dual%area(i)*rate*(content - state%content(i)) &
         + cell_outflow(disc%dual, seepage%q, i)
     end do

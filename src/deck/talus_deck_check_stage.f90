@@ -101,6 +101,10 @@ contains
     type(stage_t), intent(in) :: stage
     type(messages_t), intent(inout) :: messages
 
+    if (deck_exceeds(stage%step_safety, 1.0_dp)) call warn(store, section, 'step_safety', &
+      'above 1: the motion is unstable', messages)
+    if (deck_exceeds(stage%water_safety, 1.0_dp)) call warn(store, section, 'water_safety', &
+      'above 1: the water may be unstable', messages)
     if (stage%kind /= 'storm') return
     if (deck_exceeds(stage%storm_step, stage%duration)) then
       call complain(store, section, 'storm_step', 'longer than the stage', messages, &

@@ -259,6 +259,8 @@ contains
     ! Relaxation has masses of its own.
     if (stage%kind /= 'dynamic') stage%mass = 'lumped'
     call get(store, s, 'step_safety', stage%step_safety)
+    call get(store, s, 'water_step', stage%water_step)
+    call get(store, s, 'water_safety', stage%water_safety)
     call get(store, s, 'failure_displacement', stage%failure_displacement)
     call get(store, s, 'after_failure', stage%after_failure)
     call get(store, s, 'only_after_failure', stage%only_after_failure)

@@ -154,8 +154,14 @@ contains
              'Inertia in real time: at the nodes, or consistent with the cell means of the '// &
              'strain, which makes waves run at their speed on coarse nodes too, at a step '// &
              'shorter by about a third.', 'kind=dynamic')
-    call key(t, 'step_safety', 'real', '', '0.9', '(0, 1]', &
-             'Time step over the largest stable one.')
+    call key(t, 'step_safety', 'real', '', '0.9', '(0, 1.2]', &
+             'Time step of the soil over the largest stable one; above 1 it is unstable.')
+    call key(t, 'water_step', 'string', '', 'automatic', 'automatic|explicit', &
+             'Steps of the water: explicit or implicit, whichever gets further, or explicit '// &
+             'ones alone.', 'kind=storm|dynamic')
+    call key(t, 'water_safety', 'real', '', '0.95', '(0, 2]', &
+             'Explicit step of the water over its limit (src/THEORY.md (5.4)); above 1 it '// &
+             'may be unstable.', 'kind=storm|dynamic')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
              'Displacement in a storm step, or a trial of strength reduction, that counts as '// &
              'failure; absent: in a storm none, else 4 times unit weight, mean depth squared '// &

@@ -109,7 +109,9 @@ module talus_deck_types
     real(dp) :: damping
     logical :: mass_scaling
     character(:), allocatable :: mass
-    real(dp) :: step_safety, failure_displacement
+    real(dp) :: step_safety
+    character(:), allocatable :: water_step
+    real(dp) :: water_safety, failure_displacement
     character(:), allocatable :: after_failure
     logical :: only_after_failure
     real(dp) :: rest_velocity

@@ -107,8 +107,11 @@ contains
           ' mass, local damping '// &
           text_of(stage%damping)//'; '
       end if
-      if (stage%solve /= 'soil') call seepage_shape(session%seepage, disc, session%ground, &
-                                                    session%conditions%inlets, state)
+      if (stage%solve /= 'soil') then
+        session%seepage%explicit_only = stage%water_step == 'explicit'
+        session%seepage%safety = stage%water_safety
+        call seepage_shape(session%seepage, disc, session%ground, session%conditions%inlets, state)
+      end if
     end associate
     session%last_good = session%state
   end subroutine stage_begin

@@ -27,9 +27,8 @@ module talus_seepage
   public :: seepage_t, seepage_shape, seepage_advance, seepage_invert, face_fluxes, seepage_velocity
   public :: seepage_step_limit, seepage_supply
 
-  !> Fraction of the stability limit that an explicit step takes, and the most it may have of the
-  !> limit after it.
-  real(dp), parameter :: safety = 0.95_dp, excess = 1.5_dp
+  !> The most that an explicit step may have of the limit after it.
+  real(dp), parameter :: excess = 1.5_dp
   !> Most growth from one explicit step to the next, and what a rejected one is divided by.
   real(dp), parameter :: growth = 2.0_dp, cut = 8.0_dp
   integer, parameter :: most_cuts = 7
@@ -75,9 +74,9 @@ contains
     finished = .not. duration > 0.0_dp
     do while (.not. finished)
       allowed = allowed_step(inlets, start + done, duration - done)
-      step = min(safety*limit, allowed)
+      step = min(seepage%safety*limit, allowed)
       if (seepage%last > 0.0_dp) step = min(step, growth*seepage%last)
-      if (min(seepage%stride, allowed) > cost*step) then
+      if (.not. seepage%explicit_only .and. min(seepage%stride, allowed) > cost*step) then
         call newton_prepare(newton, disc)
         call implicit_step(newton, seepage, disc, ground, inlets, start + done, allowed, state, &
           step)
@@ -128,6 +127,7 @@ contains
       call take_step(seepage, disc, ground, inlets, time, step, state)
       call face_fluxes(seepage, disc, ground, state)
       moved = maxval(abs(state%content - content))
+      if (seepage%explicit_only) exit
       if (step <= excess*seepage_step_limit(seepage, disc, ground, state) .and. &
           moved <= 2.0_dp*content_change) exit
       if (cuts == most_cuts) exit

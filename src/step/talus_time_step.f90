@@ -105,9 +105,10 @@ contains
       associate (curve => ground%curve(soil))
         effective = (state%saturation(i) - curve%residual)/(curve%maximum - curve%residual)
       end associate
-      ! w = pore S: S dJ + capacity dp = 0.
-      bulk(i) = bishop_factor(-state%pressure(i), effective)*state%saturation(i) &
-                *state%jacobian(i)/state%capacity(i)
+      ! w(p, J) stays: dw/dJ dJ + dw/dp dp = 0, with dw/dJ = S + S_s <p + s_a>.
+      bulk(i) = bishop_factor(-state%pressure(i), effective)*(state%saturation(i) &
+        + ground%storage(soil)*max(state%pressure(i) + ground%curve(soil)%entry, 0.0_dp)) &
+        *state%jacobian(i)/state%capacity(i)
     end do
   end subroutine water_bulk_modulus
 

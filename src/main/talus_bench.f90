@@ -57,7 +57,7 @@ contains
     call say('price list')
     call measure_prices(price_name, price_parts, nodes_quick, price, status)
     if (status_failed(status)) return
-    write (output_unit, '(a)') report_text(speed, price)
+    write (output_unit, '(a)') report_text(speed, price, '')
     if (len(output) > 0) call report_files(output, speed, price, status)
     call print_keys(speed)
   end subroutine bench

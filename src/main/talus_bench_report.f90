@@ -9,8 +9,9 @@ module talus_bench_report
   use talus_place, only: place_folder
   use talus_file, only: file_replace
   use talus_version, only: version, git_hash
-  use talus_bench_bytes, only: phases, phase_name, phase_seepage
+  use talus_bench_bytes, only: phases, phase_name
   use talus_bench_measure, only: speed_t, price_t, rounds
+  use talus_bench_reach, only: reach_text, reach_traffic
   implicit none
   private
   public :: report_text, report_files
@@ -19,17 +20,19 @@ module talus_bench_report
 
 contains
 
-  !> All tables.
-  function report_text(speed, price) result(text)
+  !> All tables, those of the targets first, with what people wrote about them.
+  function report_text(speed, price, notes) result(text)
     type(speed_t), intent(in) :: speed(:)
     type(price_t), intent(in) :: price(:)
+    character(*), intent(in) :: notes
     character(:), allocatable :: text
 
-    text = heading()//speed_table(speed)//nl//roofline_table(speed)//nl//setup_table(speed)//nl &
-      //price_table(price)
+    text = heading()//nl//reach_text(speed, price)//nl//notes//speed_table(speed)//nl &
+      //roofline_table(speed)//nl//setup_table(speed)//nl//price_table(price)
   end function report_text
 
-  !> README.md, scaling.csv, setup.csv and price.csv in a folder.
+  !> README.md, scaling.csv, setup.csv and price.csv in a folder. A file NOTES.md there becomes a
+  !> part of README.md.
   subroutine report_files(folder, speed, price, status)
     character(*), intent(in) :: folder
     type(speed_t), intent(in) :: speed(:)
@@ -41,11 +44,30 @@ contains
     call file_replace(folder//'/README.md', '# Speed of TALUS'//nl//nl// &
       'Written by `./talus bench`. Pictures: [scaling](scaling.png), '// &
       '[price list](price_list.png).' &
-      //nl//nl//report_text(speed, price), status)
+      //nl//nl//report_text(speed, price, notes_of(folder)), status)
     call file_replace(folder//'/scaling.csv', scaling_csv(speed), status)
     call file_replace(folder//'/setup.csv', setup_csv(speed), status)
     call file_replace(folder//'/price.csv', price_csv(price), status)
   end subroutine report_files
+
+  !> Text of NOTES.md in a folder, and an empty line; nothing without that file.
+  function notes_of(folder) result(notes)
+    character(*), intent(in) :: folder
+    character(:), allocatable :: notes
+    character(1000) :: line
+    integer :: unit, failed
+
+    notes = ''
+    open (newunit=unit, file=folder//'/NOTES.md', status='old', action='read', iostat=failed)
+    if (failed /= 0) return
+    do
+      read (unit, '(a)', iostat=failed) line
+      if (failed /= 0) exit
+      notes = notes//trim(line)//nl
+    end do
+    close (unit)
+    notes = notes//nl
+  end function notes_of
 
   !> Machine, date and how to read the tables.
   function heading() result(text)
@@ -74,7 +96,7 @@ contains
     character(:), allocatable :: text
     integer :: i, p
 
-    text = nl//'## Million node-steps per second'//nl//nl// &
+    text = '## Million node-steps per second'//nl//nl// &
       '| model | nodes | threads | whole step |'
     do p = 1, phases
       text = text//' '//trim(phase_name(p))//' |'
@@ -109,9 +131,9 @@ contains
       'peak bytes per node |'//nl// &
       '|---|--:|--:|--:|--:|--:|--:|--:|--:|'//nl
     do i = 1, size(speed)
-      text = text//start(speed(i))//number(traffic(speed(i))/real(speed(i)%nodes, dp)) &
-        //number(1.0e-9_dp*traffic(speed(i))/speed(i)%step)//number(1.0e-9_dp*speed(i)%triad) &
-        //number(fraction_of(speed(i)))//number(speed(i)%speedup/real(speed(i)%threads, dp)) &
+      text = text//start(speed(i))//number(reach_traffic(speed(i))/real(speed(i)%nodes, dp)) &
+        //number(1.0e-9_dp*reach_traffic(speed(i))/speed(i)%step) &
+        //number(1.0e-9_dp*speed(i)%triad)//number(fraction_of(speed(i)))//number(speed(i)%speedup/real(speed(i)%threads, dp)) &
         //number(real(speed(i)%peak, dp)/real(speed(i)%nodes, dp))//nl
     end do
   end function roofline_table
@@ -174,7 +196,7 @@ contains
     text = 'model,nodes,threads,phase,node_steps_per_s,bytes_per_node_step,triad_bytes_per_s,'// &
       'roofline_fraction,parallel_efficiency,peak_bytes_per_node'//nl
     do i = 1, size(speed)
-      call line('whole', speed(i)%step, traffic(speed(i)))
+      call line('whole', speed(i)%step, reach_traffic(speed(i)))
       do p = 1, phases
         if (speed(i)%bytes(p) > 0.0_dp) call line(trim(phase_name(p)), speed(i)%phase(p), &
                                                   speed(i)%bytes(p))
@@ -241,17 +263,10 @@ contains
     end do
   end function replaced
 
-  !> Bytes of a whole step by count, with its share of the water.
-  pure real(dp) function traffic(speed)
-    type(speed_t), intent(in) :: speed
-
-    traffic = sum(speed%bytes) - (1.0_dp - speed%share)*speed%bytes(phase_seepage)
-  end function traffic
-
   pure real(dp) function fraction_of(speed) result(fraction)
     type(speed_t), intent(in) :: speed
 
-    fraction = traffic(speed)/speed%step/speed%triad
+    fraction = reach_traffic(speed)/speed%step/speed%triad
   end function fraction_of
 
   pure real(dp) function rate(speed, seconds)

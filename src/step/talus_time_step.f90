@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Largest stable step of the soil: 2/omega of the highest eigenfrequency of M^-1 K, found by power
-!> iteration without a matrix (src/THEORY.md (5.2)). K is the elastic tangent in the present
+!> Largest stable step of the soil: 2/omega of the highest eigenfrequency of M^-1 K, found by
+!> conjugate gradients without a matrix (src/THEORY.md (5.2)). K is the elastic tangent in the present
 !> shape with stabilisation and, where the pore water moves with the soil, its stiffness.
 module talus_time_step
   use talus_kinds, only: dp
@@ -14,6 +14,8 @@ module talus_time_step
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_residual, only: residual_gather
   use talus_inertia, only: inertia_apply
+  use talus_rayleigh, only: direction_t, direction_blend, direction_residual, direction_without, &
+    direction_unit, rayleigh_best
   use talus_force, only: force_one_level, force_unbalanced
   use talus_soil_step, only: work_t, motion_t
   implicit none
@@ -21,8 +23,8 @@ module talus_time_step
   public :: time_step_stable, stiffness_apply, water_bulk_modulus
 
   !> Relative change of the eigenvalue at which the iteration stops, and its most turns.
-  real(dp), parameter :: power_tolerance = 1.0e-5_dp
-  integer, parameter :: power_max = 400
+  real(dp), parameter :: tolerance = 1.0e-5_dp
+  integer, parameter :: turns_most = 200
   !> Part of the start vector that is new when the last fastest mode is known.
   real(dp), parameter :: start_share = 0.3_dp
 
@@ -35,43 +37,75 @@ contains
     type(state_t), intent(in) :: state
     type(motion_t), intent(inout) :: motion
     type(work_t), intent(inout) :: work
-    real(dp), allocatable :: d(:,:), md(:,:), bulk(:), nothing(:,:)
-    real(dp) :: square, before, length
+    real(dp), allocatable :: bulk(:), nothing(:,:)
+    type(direction_t) :: now, ahead, back
+    real(dp) :: square, before, share(3)
+    logical :: regular, turned
     integer :: turn
 
-    allocate (d(2, disc%n), md(2, disc%n), bulk(disc%n), nothing(2, disc%n))
+    allocate (bulk(disc%n), nothing(2, disc%n), now%d(2, disc%n), now%m(2, disc%n))
     nothing = 0.0_dp
     call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
-    call start_vector(motion%mobility, d)
+    call start_vector(motion%mobility, now%m)
     step = 0.0_dp
-    square = sum_products(2*disc%n, d, d)
+    square = sum_products(2*disc%n, now%m, now%m)
     if (square <= 0.0_dp) return
     ! The fastest mode moves little from one look to the next; some of all others finds a new one.
-    if (allocated(motion%mode)) d = motion%mode + (start_share/sqrt(square))*d
-    ! A first guess of M d when the mass is not lumped; the next turn has it exactly.
-    md = 0.0_dp
-    where (motion%mobility > 0.0_dp) md = d/motion%mobility
-    before = 0.0_dp
-    do turn = 1, power_max
-      ! In the metric of the mass the operator is symmetric: omega^2 = d.Kd/(d.Md) with
-      ! d = M^-1 K d_before, where d.Md = d.K d_before.
-      length = sqrt(sum_products(2*disc%n, d, d))
-      d = d/length
-      md = md/length
-      call stiffness_apply(disc, ground, state, bulk, nothing, d, work)
-      square = sum_products(2*disc%n, d, work%force)/sum_products(2*disc%n, d, md)
-      md = work%force
-      if (motion%consistent) then
-        call inertia_apply(disc%dual, motion%pair_mass, motion%mobility, work%force, d)
-      else
-        d = work%force*motion%mobility
+    if (allocated(motion%mode)) now%m = motion%mode + (start_share/sqrt(square))*now%m
+    call displace(disc, motion, now%m, now%d)
+    call stiffness_apply(disc, ground, state, bulk, nothing, now%d, work)
+    now%k = work%force
+    call direction_unit(now, regular)
+    ahead = now
+    back = now
+    square = sum_products(2*disc%n, now%d, now%k)
+    turned = .false.
+    do turn = 1, turns_most
+      ! The residual K d - omega^2 M d, and where it points: M^-1 K d - omega^2 d.
+      call direction_residual(now, square, ahead%m)
+      call displace(disc, motion, ahead%m, ahead%d)
+      call stiffness_apply(disc, ground, state, bulk, nothing, ahead%d, work)
+      ahead%k = work%force
+      call direction_unit(ahead, regular)
+      if (.not. regular) exit
+      call direction_without(now, ahead)
+      call direction_unit(ahead, regular)
+      if (turned) then
+        call direction_without(now, back)
+        call direction_without(ahead, back)
+        call direction_unit(back, turned)
       end if
-      if (abs(square - before) <= power_tolerance*square) exit
       before = square
+      call rayleigh_best(now, ahead, back, turned, share, square)
+      ! What is added in this turn is the third direction of the next.
+      call direction_blend(share(2), ahead, share(3), back)
+      call direction_blend(1.0_dp, back, share(1), now)
+      call direction_unit(now, regular)
+      turned = .true.
+      if (square - before <= tolerance*square) exit
     end do
     step = 2.0_dp/sqrt(square)
-    motion%mode = d/sqrt(sum_products(2*disc%n, d, d))
+    motion%mode = now%m/sqrt(sum_products(2*disc%n, now%m, now%m))
   end function time_step_stable
+
+  !> Displacement M^-1 times a force.
+  subroutine displace(disc, motion, force, d)
+    type(disc_t), intent(in) :: disc
+    type(motion_t), intent(in) :: motion
+    real(dp), contiguous, intent(in) :: force(:,:)  !! [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: d(:,:)   !! (2,n)
+    integer :: i
+
+    if (motion%consistent) then
+      call inertia_apply(disc%dual, motion%pair_mass, motion%mobility, force, d)
+      return
+    end if
+    !$omp parallel do default(none) shared(motion, force, d) private(i) schedule(static)
+    do i = 1, size(d, 2)
+      d(:, i) = force(:, i)*motion%mobility(:, i)
+    end do
+    !$omp end parallel do
+  end subroutine displace
 
   !> Alternating values with an irregular part, so that no mode is left out.
   pure subroutine start_vector(mobility, d)

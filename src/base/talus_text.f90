@@ -5,7 +5,7 @@ module talus_text
   use talus_kinds, only: dp, i8
   implicit none
   private
-  public :: text_of, text_lower, text_is_one_of
+  public :: text_of, text_lower, text_is_one_of, text_as_word
 
   !> Shortest readable text of a number: text_of(0.4_dp) is '0.4'.
   interface text_of
@@ -113,4 +113,18 @@ contains
     text_is_one_of = index(word, '|') == 0 .and. &
       index('|'//choices//'|', '|'//trim(word)//'|') > 0
   end function text_is_one_of
+
+  !> A text as one word, for names of columns: all but letters and digits become underscores.
+  pure function text_as_word(text) result(word)
+    character(*), intent(in) :: text
+    character(:), allocatable :: word
+    character(*), parameter :: allowed = 'abcdefghijklmnopqrstuvwxyz'// &
+      'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'
+    integer :: i
+
+    word = text
+    do i = 1, len(text)
+      if (index(allowed, text(i:i)) == 0) word(i:i) = '_'
+    end do
+  end function text_as_word
 end module talus_text

@@ -3,7 +3,8 @@
 module talus_deck_check_stage
   use talus_kinds, only: dp
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, stage_t, soil_t, deck_given, deck_exceeds, deck_acts_in
+  use talus_deck_types, only: deck_t, stage_t, soil_t, deck_given, deck_exceeds, deck_acts_in, &
+    deck_held
   use talus_deck_store, only: store_t, store_sections
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
@@ -197,33 +198,27 @@ contains
     type(stage_t), intent(in) :: stage
     type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
-    logical :: holds_x, holds_y
+    logical :: holds(2)
     integer :: i
 
     if (.not. deck_exceeds(deck%run%gravity, 0.0_dp)) return
-    holds_x = .false.
-    holds_y = .false.
+    holds = .false.
     do i = 1, size(deck%boundary)
       associate (boundary => deck%boundary(i))
         if (.not. deck_acts_in(boundary, stage%name)) cycle
         if (boundary%displacement == '') return
-        holds_x = holds_x .or. boundary%displacement == 'fixed' .or. &
-                  boundary%displacement == 'roller_x' .or. deck_given(boundary%velocity_x) .or. &
-                  size(boundary%velocity_gradient) > 0
-        holds_y = holds_y .or. boundary%displacement == 'fixed' .or. &
-                  boundary%displacement == 'roller_y' .or. deck_given(boundary%velocity_y) .or. &
-                  size(boundary%velocity_gradient) > 0
+        holds = holds .or. deck_held(boundary)
       end associate
     end do
     if (stage%kind == 'dynamic') then
-      if (.not. holds_y) call warn(store, section, 'name', &
+      if (.not. holds(2)) call warn(store, section, 'name', &
           'no &boundary holds y in this stage: the '// &
                                    'body falls freely', messages)
       return
     end if
-    if (.not. holds_y) call complain(store, section, 'name', 'no &boundary holds y in this stage', &
-      messages, 'a &boundary with displacement = ''fixed'' or ''roller_y''')
-    if (.not. holds_x) call complain(store, section, 'name', 'no &boundary holds x in this stage', &
-      messages, 'a &boundary with displacement = ''fixed'' or ''roller_x''')
+    if (.not. holds(2)) call complain(store, section, 'name', &
+      'no &boundary holds y in this stage', messages, 'a &boundary with displacement = ''fixed'' or ''roller_y''')
+    if (.not. holds(1)) call complain(store, section, 'name', &
+      'no &boundary holds x in this stage', messages, 'a &boundary with displacement = ''fixed'' or ''roller_x''')
   end subroutine check_support
 end module talus_deck_check_stage

@@ -65,7 +65,10 @@ contains
     call group(t, 'boundary', .true., .false., &
                'A part of the boundary and what acts there. Supports and loads add up; '// &
                'of its conditions for water the last counts.')
-    call key(t, 'name', 'string', '', '', '', 'Name, for messages and summaries.')
+    call key(t, 'name', 'string', '', '', '', &
+             'Name, for messages; where nodes are held or driven, '// &
+             'the history has their reaction: '// &
+             'the force on the soil.')
     call key(t, 'where', 'string', '', '*', 'left|right|bottom|top|face|surface|box|all', &
              'Which part: a side, the face of a slope, the surface (top and face), a box or all.')
     call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', &

@@ -9,7 +9,7 @@ module talus_deck_types
   private
   public :: deck_t, run_t, geometry_t, nodes_t, smoothing_t, soil_t, damage_t, water_t, initial_t
   public :: boundary_t, stage_t, output_t, deck_given, deck_soil_index, deck_damage_index
-  public :: deck_water_index, deck_acts_in, deck_exceeds, deck_moves_soil
+  public :: deck_water_index, deck_acts_in, deck_exceeds, deck_moves_soil, deck_held
 
   !> Longest name of a soil, boundary or stage.
   integer, parameter, public :: name_length = 64
@@ -210,6 +210,16 @@ contains
       if (deck%stage(i)%solve == 'soil' .or. deck%stage(i)%solve == 'both') deck_moves_soil = .true.
     end do
   end function deck_moves_soil
+
+  !> Directions that a boundary holds or drives.
+  pure function deck_held(boundary) result(held)
+    type(boundary_t), intent(in) :: boundary
+    logical :: held(2) !! x, y
+
+    held = size(boundary%velocity_gradient) > 0 .or. boundary%displacement == 'fixed'
+    held = held .or. deck_given([boundary%velocity_x, boundary%velocity_y]) .or. &
+           boundary%displacement == ['roller_x', 'roller_y']
+  end function deck_held
 
   !> True when a boundary acts in a stage.
   pure logical function deck_acts_in(boundary, stage)

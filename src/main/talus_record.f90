@@ -3,7 +3,9 @@
 module talus_record
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
-  use talus_text, only: text_of
+  use talus_text, only: text_of, text_as_word
+  use talus_deck_types, only: boundary_t, deck_held
+  use talus_conditions, only: conditions_reaction
   use talus_session, only: session_t
   use talus_state, only: state_t
   use talus_soil_law, only: history_eqps, history_damage
@@ -104,6 +106,9 @@ contains
         call add('energy_external', 'J/m', energies%external)
         call add('energy_error', '1', audit_energy_error(session%energies_start, energies))
       end if
+      do i = 1, size(session%deck%boundary)
+        if (session%soil_moves) call add_reaction(session%deck%boundary(i))
+      end do
       if (allocated(session%reduction)) then
         call add('factor', '1', session%factor)
         call add('factor_stands', '1', merge(1.0_dp, 0.0_dp, session%stands))
@@ -129,6 +134,20 @@ contains
     end associate
 
   contains
+
+    !> Reaction of a boundary with a name, in the directions that it holds.
+    subroutine add_reaction(boundary)
+      type(boundary_t), intent(in) :: boundary
+      real(dp) :: reaction(2)
+      character(:), allocatable :: title
+
+      if (len(boundary%name) == 0 .or. .not. any(deck_held(boundary))) return
+      title = 'reaction_'//text_as_word(boundary%name)
+      if (any(columns%name(:columns%n) == title//'_x')) return
+      reaction = conditions_reaction(session%conditions, boundary%name, session%work%force)
+      call add(title//'_x', 'N/m', reaction(1))
+      call add(title//'_y', 'N/m', reaction(2))
+    end subroutine add_reaction
 
     subroutine add(name, unit, value)
       character(*), intent(in) :: name, unit

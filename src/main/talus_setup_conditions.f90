@@ -4,12 +4,13 @@ module talus_setup_conditions
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
-  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_acts_in
+  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_held, deck_acts_in
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
-    conditions_deform, conditions_floor, inlet_paint_t, inlets_start, inlets_paint, inlets_finish, &
-    inlets_t, inlet_none, inlet_head, inlet_flux, inlet_rain, inlet_seepage
+    conditions_deform, conditions_floor, conditions_support, inlet_paint_t, inlets_start, &
+    inlets_paint, inlets_finish, inlets_t, inlet_none, inlet_head, inlet_flux, inlet_rain, &
+    inlet_seepage
   use talus_rain, only: rain_t, rain_constant, rain_read
   use talus_steady, only: steady_heads
   implicit none
@@ -94,6 +95,8 @@ contains
     if (size(boundary%velocity_gradient) == 4) call conditions_deform(conditions, set, &
       boundary%velocity_gradient, [boundary%centre_x, boundary%centre_y])
     if (deck_given(boundary%floor)) call conditions_floor(conditions, set, boundary%floor)
+    if (len(boundary%name) > 0 .and. any(deck_held(boundary))) &
+      call conditions_support(conditions, set, boundary%name, deck_held(boundary))
   end subroutine add_supports
 
   !> Where water enters and leaves.

@@ -14,7 +14,7 @@ module talus_stages
   use talus_conditions, only: conditions_follow
   use talus_floor, only: floor_land
   use talus_initial, only: initial_water, weight_masses, weight_load
-  use talus_soil_step, only: soil_step, soil_force
+  use talus_soil_step, only: soil_step, soil_force, soil_leave_rest
   use talus_relax, only: relax_t, relax, motion_prepare, motion_shorten, largest_motion, &
     relax_balanced, relax_broken
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
@@ -122,6 +122,7 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     real(dp) :: before
+    integer :: failed
 
     associate (state => session%state, conditions => session%conditions)
       before = state%ahead
@@ -133,6 +134,9 @@ contains
       else
         state%v = 0.0_dp
         state%acceleration = 0.0_dp
+        ! A failure here shows again in the first step, which reports it.
+        if (stage%kind == 'dynamic') call soil_leave_rest(session%disc, session%ground, &
+          session%motion, state, session%work, failed)
       end if
       if (abs(stage%spin) > 0.0_dp) state%v = state%v + spinning( &
         session%disc%mesh%x + state%u, state%mass, stage%spin)

@@ -11,6 +11,7 @@ module talus_conditions
   private
   public :: conditions_t, inlets_t, conditions_allocate, conditions_hold, conditions_load
   public :: conditions_deform, conditions_follow, conditions_floor, floor_t
+  public :: conditions_support, conditions_reaction
   public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch
 
   integer, parameter, public :: inlet_none = 0, inlet_head = 1, inlet_flux = 2, inlet_rain = 3, &
@@ -33,6 +34,12 @@ module talus_conditions
     real(dp), allocatable :: level(:) !! elevation y [m], (m)
   end type floor_t
 
+  !> Nodes that a named boundary holds or drives, for its reaction.
+  type :: support_t
+    character(:), allocatable :: name
+    logical, allocatable :: held(:,:)    !! in this direction, (2,n)
+  end type support_t
+
   type :: conditions_t
     logical, allocatable :: held(:,:)    !! displacement is prescribed, (2,n)
     real(dp), allocatable :: given(:,:)  !! prescribed velocity [m/s], (2,n)
@@ -43,6 +50,7 @@ module talus_conditions
     real(dp), allocatable :: gradient(:,:) !! velocity gradient xx, xy, yx, yy [1/s], (4,motions)
     real(dp), allocatable :: centre(:,:)   !! fixed point [m], (2,motions)
     type(floor_t), allocatable :: floor    !! allocated where the stage has one
+    type(support_t), allocatable :: support(:) !! of the named boundaries that act in the stage
     type(inlets_t) :: inlets
   end type conditions_t
 
@@ -61,7 +69,48 @@ contains
 
     allocate (conditions%held(2, n), source=.false.)
     allocate (conditions%given(2, n), conditions%traction(2, n), source=0.0_dp)
+    allocate (conditions%support(0))
   end subroutine conditions_allocate
+
+  !> Remember what a named boundary holds, so that its reaction can be asked for. Boundaries of the
+  !> same name count as one.
+  pure subroutine conditions_support(conditions, set, name, along)
+    type(conditions_t), intent(inout) :: conditions
+    type(boundary_set_t), intent(in) :: set
+    character(*), intent(in) :: name
+    logical, intent(in) :: along(2) !! directions held or driven
+    type(support_t) :: support
+    integer :: i, j
+
+    do i = 1, size(conditions%support)
+      if (conditions%support(i)%name == name) exit
+    end do
+    if (i > size(conditions%support)) then
+      support%name = name
+      allocate (support%held(2, size(conditions%held, 2)), source=.false.)
+      conditions%support = [conditions%support, support]
+    end if
+    do j = 1, 2
+      if (along(j)) conditions%support(i)%held(j, set%node) = .true.
+    end do
+  end subroutine conditions_support
+
+  !> Force that a named boundary exerts on the soil by holding or driving it [N/m]; none where it
+  !> does not act.
+  pure function conditions_reaction(conditions, name, force) result(reaction)
+    type(conditions_t), intent(in) :: conditions
+    character(*), intent(in) :: name
+    real(dp), intent(in) :: force(:,:) !! out-of-balance force of the nodes [N/m], (2,n)
+    real(dp) :: reaction(2)
+    integer :: i
+
+    reaction = 0.0_dp
+    if (.not. allocated(conditions%support)) return
+    do i = 1, size(conditions%support)
+      if (conditions%support(i)%name == name) &
+        reaction = -sum(force, dim=2, mask=conditions%support(i)%held)
+    end do
+  end function conditions_reaction
 
   !> Hold or drive one direction of the nodes of a set.
   pure subroutine conditions_hold(conditions, set, direction, velocity)

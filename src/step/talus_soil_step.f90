@@ -21,7 +21,7 @@ module talus_soil_step
     motion_damp, motion_velocity_consistent
   implicit none
   private
-  public :: work_t, motion_t, work_allocate, soil_step, soil_force
+  public :: work_t, motion_t, work_allocate, soil_step, soil_force, soil_leave_rest
 
   !> Fields that live within a step only.
   type :: work_t
@@ -77,15 +77,44 @@ contains
     !$omp parallel default(none) shared(disc, ground, motion, state, work, failed)
     call motion_position(motion%step, state%v, state%u)
     call forces(disc, ground, motion%coupled, state, work, failed)
+    call accelerate(disc, motion, state, work)
+    !$omp end parallel
+    state%steps = state%steps + 1_i8
+  end subroutine soil_step
+
+  !> From rest, at the present position, to the velocity half a step ahead. Without it, motion from
+  !> rest would lag half a step behind.
+  subroutine soil_leave_rest(disc, ground, motion, state, work, failed)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+    integer, intent(out) :: failed
+
+    failed = 0
+    state%v = 0.0_dp
+    !$omp parallel default(none) shared(disc, ground, motion, state, work, failed)
+    call forces(disc, ground, motion%coupled, state, work, failed)
+    call accelerate(disc, motion, state, work)
+    !$omp end parallel
+    state%v = 0.5_dp*state%v
+  end subroutine soil_leave_rest
+
+  !> Velocities at the next half step; within a parallel region.
+  subroutine accelerate(disc, motion, state, work)
+    type(disc_t), intent(in) :: disc
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(inout) :: state
+    type(work_t), intent(inout) :: work
+
     if (motion%consistent) then
       call move_consistent(disc, motion, state, work)
     else
       call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
                            state%v, state%acceleration, state%damped)
     end if
-    !$omp end parallel
-    state%steps = state%steps + 1_i8
-  end subroutine soil_step
+  end subroutine accelerate
 
   !> Velocities with the consistent mass; within a parallel region.
   subroutine move_consistent(disc, motion, state, work)

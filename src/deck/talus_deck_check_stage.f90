@@ -217,8 +217,10 @@ contains
       return
     end if
     if (.not. holds(2)) call complain(store, section, 'name', &
-      'no &boundary holds y in this stage', messages, 'a &boundary with displacement = ''fixed'' or ''roller_y''')
+      'no &boundary holds y in this stage', messages, &
+      'a &boundary with displacement = ''fixed'' or ''roller_y''')
     if (.not. holds(1)) call complain(store, section, 'name', &
-      'no &boundary holds x in this stage', messages, 'a &boundary with displacement = ''fixed'' or ''roller_x''')
+      'no &boundary holds x in this stage', messages, &
+      'a &boundary with displacement = ''fixed'' or ''roller_x''')
   end subroutine check_support
 end module talus_deck_check_stage

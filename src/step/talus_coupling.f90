@@ -3,9 +3,9 @@
 !>
 !> In turns, until both agree: the water moves while the pores give way as at fixed total stress,
 !> then the soil finds its equilibrium at the pressures found. Each turn starts from the water
-!> before the step, so the fluxes of the last one are those of the step and no water is lost. What the
-!> pores then hold at these pressures and the water stored differ by less each turn; the rest is
-!> left to the next step, which starts from the water stored.
+!> before the step, so the fluxes of the last one are those of the step and no water is lost.
+!> What the pores then hold at these pressures and the water stored differ by less each turn; the
+!> rest is left to the next step, which starts from the water stored.
 module talus_coupling
   use talus_kinds, only: dp
   use talus_disc, only: disc_t

@@ -13,7 +13,7 @@ module talus_darcy
   use talus_face_flow, only: face_drive, face_mean
   use talus_permeability, only: permeability_kozeny_carman
   use talus_water_curve, only: curve_at_pressure
-  use talus_strain, only: strain_first
+  use talus_head_slope, only: head_slope
   implicit none
   private
   public :: seepage_t, seepage_shape, seepage_hold, face_fluxes, face_two_point, face_oblique
@@ -127,7 +127,7 @@ contains
         seepage%head(1, i) = state%pressure(i)/ground%unit_weight + seepage%height(i)
       end do
       !$omp end do
-      call strain_first(disc%scni, seepage%head, seepage%slope)
+      call head_slope(disc, size(ground%law) > 1, seepage%head, seepage%slope)
     end if
     !$omp do schedule(static)
     do e = 1, size(seepage%q)
@@ -288,7 +288,7 @@ contains
     allocate (head(2, disc%n), slope(4, disc%n))
     head(1, :) = state%pressure/ground%unit_weight + disc%mesh%x(2, :) + state%u(2, :)
     head(2, :) = 0.0_dp
-    call strain_first(disc%scni, head, slope)
+    call head_slope(disc, size(ground%law) > 1, head, slope)
     do i = 1, disc%n
       associate (f => state%f(:, i), g => slope(1:2, i)/disc%dual%area(i))
         ! Present gradient F^-T grad.

@@ -19,7 +19,7 @@ module talus_seepage_newton
   use talus_water_curve, only: curve_at_pressure
   use talus_darcy, only: seepage_t, face_fluxes, face_two_point, face_oblique, &
     oblique_mean, cell_outflow
-  use talus_strain, only: strain_first
+  use talus_head_slope, only: head_slope
   implicit none
   private
   public :: newton_t, newton_prepare, newton_solve, newton_cost
@@ -211,7 +211,7 @@ contains
       newton%head(1, i) = newton%change(i, 1)/ground%unit_weight
     end do
     !$omp end do
-    call strain_first(disc%scni, newton%head, newton%gradient)
+    call head_slope(disc, size(ground%law) > 1, newton%head, newton%gradient)
     !$omp do schedule(static)
     do e = 1, size(newton%oblique)
       newton%oblique(e) = face_oblique(seepage, disc, e, ratio, newton%gradient)

@@ -108,8 +108,9 @@ contains
         low = max(low, pressure)
         high = min(high, pressure - excess/give)
       end if
+      ! As near as the round-off of the water lets it come.
+      if (abs(excess) <= 4.0_dp*epsilon(1.0_dp)*(content + give*abs(pressure - anchor))) return
       change = -excess/capacity
-      if (abs(change) <= 4.0_dp*epsilon(1.0_dp)*max(abs(pressure), abs(anchor), 1.0_dp)) return
       if (pressure + change < low .or. pressure + change > high) &
         change = 0.5_dp*(low + high) - pressure
       pressure = pressure + change

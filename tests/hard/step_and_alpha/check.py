@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""The failing demo slope, input/rain_slope, with half the time step and with twice the stabilisation.
+
+Half the step of the slide must change the final displacement by less than 1 %, and so must twice the
+stabilisation. The greatest displacement and its mean over the slide (where it is more than half of that)
+are measured.
+"""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "verify"))
+from talus_case import Case  # noqa: E402
+
+case = Case(
+    pathlib.Path(__file__).resolve().parents[3] / "input" / "rain_slope",
+    id="hard 9",
+    title="Half the step and twice the stabilisation on the failing demo slope",
+    error="relative change of the final displacement",
+    reference="the demo as it is",
+)
+case.story["case"] = "step_and_alpha"
+
+
+def slope(name, *replace):
+    """Greatest displacement, its mean over the slide, and the run."""
+    result = case.run("case.nml", list(replace), name=name)
+    length = np.linalg.norm(result.field("displacement"), axis=1)
+    slid = length > 0.5 * length.max()
+    mean = (length * result.area)[slid].sum() / result.area[slid].sum()
+    print(
+        f"     {name}: largest {length.max():.4g} m, mean {mean:.4g} m, "
+        f"failure after {result.summary['trigger_time']} s"
+    )
+    return length.max(), mean, float(result.summary["trigger_time"]), result
+
+
+largest, mean, trigger, demo = slope("demo")
+curves = {"as it is": demo}
+for what, name, replace, held in (
+    (
+        "half the step of the slide",
+        "half_step",
+        ("name = 'slide'", "name = 'slide'\n  step_safety = 0.45"),
+        0.03,
+    ),
+    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.35),
+):
+    other = slope(name, replace)
+    curves[what] = other[3]
+    for quantity, one, two in (("greatest", largest, other[0]), ("mean", mean, other[1])):
+        change = abs(two / one - 1.0)
+        case.target(f"{what}: change of the {quantity} displacement", change, 0.01, "issue", held=(0.0, held))
+    case.check(f"{what}: change of the time of failure", abs(other[2] / trigger - 1.0), 0.15, "held")
+case.picture(
+    "Largest displacement during the slide",
+    "time since the slide began [s]",
+    "largest displacement [m]",
+    {
+        what: (
+            h["time"][h["stage"] == "slide"] - h["time"][h["stage"] == "slide"][0],
+            h["maximum_displacement"][h["stage"] == "slide"],
+        )
+        for what, h in ((what, result.history()) for what, result in curves.items())
+    },
+)
+# Without stabilisation the slope does not slide as a mass: single nodes fly off.
+_, _, _, bare = slope("no_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.004"))
+flown = np.linalg.norm(bare.field("displacement"), axis=1)
+case.remedy(
+    "nodal modes of a sliding mass; remedy: stabilisation = 0.05",
+    f"with 0.004 of the soil's stiffness single nodes fly off, up to {flown.max():.3g} m, "
+    f"{flown.max() / np.percentile(flown, 95):.3g} times what 95 % of the nodes stay below",
+    f"largest displacement {largest:.3g} m",
+    flown.max() > 5.0 * largest,
+)
+case.note(
+    "Twice the stabilisation misses: it resists where F, smoothed over ell, differs from the motion of the "
+    "nodes, and a shear band is such a place. The slope then fails later, in a wetter state, and slides less "
+    "far. Tried: a tolerance of 1e-5 in place of 1e-4 and storm steps of 900 s move the times of failure of "
+    "both by under 3 % and leave their distance of 10 %; with a stabilisation of 0.004 single nodes fly off."
+)
+sys.exit(case.verdict())

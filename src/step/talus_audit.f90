@@ -13,7 +13,8 @@ module talus_audit
     history_plastic_work, history_damage_work
   use talus_soil_step, only: motion_t
   use talus_inertia, only: inertia_momentum
-  use talus_sum, only: sum_blocks, sum_products
+  use talus_elastic, only: elastic_energies
+  use talus_sum, only: sum_products
   implicit none
   private
   public :: energies_t, audit_energies, audit_energy_error, audit_stored_water, audit_water_error
@@ -32,6 +33,11 @@ module talus_audit
     real(dp) :: motion = 0.0_dp        !! 1/2 m v(n+1/2)^2: only to scale errors at the very start
   end type energies_t
 
+  !> Nodes whose energies are summed by themselves, and the sums.
+  integer, parameter :: block_length = 1024
+  integer, parameter :: sum_strain = 1, sum_plastic = 2, sum_damage = 3, sum_water = 4, &
+    sum_stabilisation = 5, sum_damping = 6, sum_load = 7, sum_kinetic = 8, sum_ahead = 9, sums = 9
+
 contains
 
   !> All energies of a state.
@@ -41,62 +47,148 @@ contains
     type(motion_t), intent(in) :: motion
     type(state_t), intent(in) :: state
     type(energies_t) :: energies
-    real(dp), allocatable :: density(:)
-    real(dp) :: damage
-    logical :: damages
-    integer :: i
+    real(dp), allocatable :: part(:,:)
+    real(dp) :: total(sums)
+    integer :: b, first
 
-    allocate (density(disc%n))
-    damages = .false.
-    if (allocated(state%history)) damages = size(state%history, 1) >= history_damage_work
-    !$omp parallel do default(none) shared(disc, ground, state, density, damages) &
-    !$omp private(i, damage) schedule(static)
-    do i = 1, disc%n
-      damage = 0.0_dp
-      if (damages) damage = state%history(history_damage, i)
-      associate (law => ground%law(disc%soil(i)), stress => state%stress(:, i))
-        ! What the rate law stores is not the change of J e at finite strain: see volume_work.
-        density(i) = soil_stored_energy(law, stress, damage) &
-          *(state%f(1, i)*state%f(4, i) - state%f(2, i)*state%f(3, i)) - state%volume_work(i)
-      end associate
+    allocate (part(sums, (disc%n + block_length - 1)/block_length))
+    !$omp parallel do default(none) shared(disc, ground, motion, state, part) private(b, first) &
+    !$omp schedule(static)
+    do b = 1, size(part, 2)
+      first = (b - 1)*block_length + 1
+      call block_sums(disc, ground, motion, state, first, min(block_length, disc%n - first + 1), &
+                      part(:, b))
     end do
     !$omp end parallel do
-    energies%strain = sum_products(disc%n, density, disc%dual%area)
-    call kinetic_energy(disc, motion, state, energies%kinetic, energies%motion)
-    if (allocated(state%history)) then
-      density = state%history(history_plastic_work, :)
-      energies%plastic = sum_products(disc%n, density, disc%dual%area)
-    end if
-    if (damages) then
-      density = state%history(history_damage_work, :)
-      energies%damage = sum_products(disc%n, density, disc%dual%area)
-    end if
-    if (allocated(state%water_work)) &
-      energies%water = sum_products(disc%n, state%water_work, disc%dual%area)
-    if (allocated(state%stabilising)) energies%stabilisation = &
-      sum_blocks(disc%n, state%stabilising) + sum_blocks(disc%n, state%stabilising_lost)
-    energies%damping = sum_blocks(disc%n, state%damped)
-    energies%external = state%external + load_work(disc%n, state)
+    ! Block after block: the same bits with any number of threads.
+    total = sum(part, dim=2)
+    energies%strain = total(sum_strain)
+    energies%plastic = total(sum_plastic)
+    energies%damage = total(sum_damage)
+    energies%water = total(sum_water)
+    energies%stabilisation = total(sum_stabilisation)
+    energies%damping = total(sum_damping)
+    energies%external = state%external + total(sum_load)
+    energies%kinetic = 0.5_dp*total(sum_kinetic)
+    energies%motion = 0.5_dp*total(sum_ahead)
+    if (motion%consistent) call consistent_energy(disc, motion, state, energies%kinetic, &
+                                                  energies%motion)
   end function audit_energies
 
-  !> 1/2 v(n-1/2).M v(n+1/2) over the nodes that can move, and 1/2 v(n+1/2).M v(n+1/2).
-  subroutine kinetic_energy(disc, motion, state, energy, ahead)
+  !> The energies of a block of nodes, all in one pass over their fields.
+  pure subroutine block_sums(disc, ground, motion, state, first, n, part)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(motion_t), intent(in) :: motion
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: first, n     !! nodes first to first + n - 1
+    real(dp), intent(out) :: part(sums) !! see sum_*
+    real(dp) :: energy(block_length), strain, load, kinetic, ahead, mass(2)
+    integer :: i, j, last
+
+    last = first + n - 1
+    call stored_energies(disc, ground, state, first, n, energy)
+    strain = 0.0_dp
+    load = 0.0_dp
+    kinetic = 0.0_dp
+    ahead = 0.0_dp
+    do i = first, last
+      ! What the rate law stores is not the change of J e at finite strain: see volume_work.
+      strain = strain + disc%dual%area(i)*(energy(i-first+1)*(state%f(1, i)*state%f(4, i) &
+        - state%f(2, i)*state%f(3, i)) - state%volume_work(i))
+      load = load + (state%load(1, i)*(state%u(1, i) - state%u_load(1, i)) &
+                     + state%load(2, i)*(state%u(2, i) - state%u_load(2, i)))
+      do j = 1, 2
+        mass(j) = 0.0_dp
+        if (motion%mobility(j, i) > 0.0_dp) mass(j) = 1.0_dp/motion%mobility(j, i)
+      end do
+      ahead = ahead + (mass(1)*state%v(1, i)**2 + mass(2)*state%v(2, i)**2)
+      kinetic = kinetic + (mass(1)*state%v(1, i)*state%acceleration(1, i) &
+                           + mass(2)*state%v(2, i)*state%acceleration(2, i))
+    end do
+    part = 0.0_dp
+    part(sum_strain) = strain
+    part(sum_load) = load
+    part(sum_ahead) = ahead
+    part(sum_kinetic) = ahead - motion%step*kinetic
+    part(sum_damping) = four_sums(n, state%damped(first:last))
+    associate (area => disc%dual%area(first:last))
+      if (allocated(state%history)) part(sum_plastic) = &
+        four_sums(n, state%history(history_plastic_work, first:last)*area)
+      if (damages(state)) part(sum_damage) = &
+        four_sums(n, state%history(history_damage_work, first:last)*area)
+      if (allocated(state%water_work)) part(sum_water) = &
+        four_sums(n, state%water_work(first:last)*area)
+    end associate
+    if (allocated(state%stabilising)) part(sum_stabilisation) = &
+      four_sums(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
+  end subroutine block_sums
+
+  !> Sum of n values, in four sums that do not wait for each other.
+  pure real(dp) function four_sums(n, a)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a(n)
+    real(dp) :: four(4)
+    integer :: i
+
+    four = 0.0_dp
+    do i = 1, n - 3, 4
+      four = four + a(i:i+3)
+    end do
+    four_sums = (four(1) + four(2)) + (four(3) + four(4))
+    do i = n - modulo(n, 4) + 1, n
+      four_sums = four_sums + a(i)
+    end do
+  end function four_sums
+
+  !> Elastic energy stored at the nodes of a block, per current volume [J/m3].
+  pure subroutine stored_energies(disc, ground, state, first, n, energy)
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: first, n
+    real(dp), intent(out) :: energy(n)
+    integer :: i, start, run
+
+    start = first
+    do while (start < first + n)
+      run = 1
+      do while (start + run < first + n)
+        if (disc%soil(start+run) /= disc%soil(start)) exit
+        run = run + 1
+      end do
+      call elastic_energies(ground%law(disc%soil(start))%elastic, run, &
+                            state%stress(:, start:start+run-1), energy(start-first+1:))
+      start = start + run
+    end do
+    if (.not. damages(state)) return
+    do i = first, first + n - 1
+      if (state%history(history_damage, i) > 0.0_dp) energy(i-first+1) = soil_stored_energy( &
+        ground%law(disc%soil(i)), state%stress(:, i), state%history(history_damage, i))
+    end do
+  end subroutine stored_energies
+
+  !> The history holds damage.
+  pure logical function damages(state)
+    type(state_t), intent(in) :: state
+
+    damages = .false.
+    if (allocated(state%history)) damages = size(state%history, 1) >= history_damage_work
+  end function damages
+
+  !> 1/2 v(n-1/2).M v(n+1/2) over the nodes that can move, and 1/2 v(n+1/2).M v(n+1/2), with the
+  !> consistent mass.
+  subroutine consistent_energy(disc, motion, state, energy, ahead)
     type(disc_t), intent(in) :: disc
     type(motion_t), intent(in) :: motion
     type(state_t), intent(in) :: state
     real(dp), intent(out) :: energy, ahead !! [J/m]
     real(dp), allocatable :: momentum(:,:)
 
-    if (motion%consistent) then
-      call inertia_momentum(disc%dual, motion%pair_mass, motion%mobility, state%v, momentum)
-    else
-      allocate (momentum(2, disc%n))
-      momentum = 0.0_dp
-      where (motion%mobility > 0.0_dp) momentum = state%v/motion%mobility
-    end if
+    call inertia_momentum(disc%dual, motion%pair_mass, motion%mobility, state%v, momentum)
     ahead = 0.5_dp*sum_products(2*disc%n, momentum, state%v)
     energy = 0.5_dp*sum_products(2*disc%n, momentum, state%v - motion%step*state%acceleration)
-  end subroutine kinetic_energy
+  end subroutine consistent_energy
 
   !> Work of the present load since it was set.
   real(dp) function load_work(n, state)

@@ -44,6 +44,12 @@ def check_tables(folder):
     assert all(a < b for a, b in zip(memory[:5], memory[1:6])), memory
     assert abs(memory[7] - memory[6]) < 1.0, memory
     report = (folder / "README.md").read_text(encoding="utf-8")
+    # The targets come first, and each says whether it is met.
+    targets = report.split("## ")[1].splitlines()
+    assert targets[0] == "Targets", targets[0]
+    rows = [line for line in targets if line.startswith("| ") and "---" not in line][1:]
+    assert len(rows) >= 8, rows
+    assert all(re.search(r"\| (met|\*\*missed.*\*\*) \|$", row) for row in rows), rows
     assert "| no |" not in report, "results depend on the number of threads"
 
 

@@ -1,0 +1,129 @@
+! SPDX-License-Identifier: MIT
+!> Stage `dynamic`: real time with true masses (src/THEORY.md section 5.7).
+module talus_dynamic
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_failed
+  use talus_deck_types, only: stage_t, deck_given
+  use talus_session, only: session_t
+  use talus_conditions, only: conditions_follow
+  use talus_floor, only: floor_land
+  use talus_soil_step, only: soil_step, soil_force
+  use talus_relax, only: motion_shorten
+  use talus_seepage, only: face_fluxes, seepage_step_limit
+  use talus_audit, only: audit_driven
+  use talus_stage_parts, only: take_load, move_water, put_off, snapshot_interval, report_broken
+  use talus_record, only: record_line, record_snapshot
+  use talus_timer, only: timer_start, timer_stop
+  implicit none
+  private
+  public :: run_dynamic
+
+  !> History lines of a dynamic stage when the deck does not say.
+  integer, parameter :: dynamic_lines = 200
+  !> Part of a dynamic stage before which rest is not believed: a slide starts slowly.
+  real(dp), parameter :: rest_share = 0.05_dp
+  !> Real-time steps between two looks at how far the soil has moved; the stable step is found again
+  !> when that is more than this part of the node spacing, and with moving pore water now and then.
+  integer(i8), parameter :: look_every = 20_i8, refresh_every = 240_i8
+  real(dp), parameter :: refresh_travel = 0.02_dp
+
+contains
+
+  !> Real time with true masses, until the duration or until the soil rests.
+  subroutine run_dynamic(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    real(dp) :: travelled
+    real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval, speed
+    integer :: failed
+
+    done = 0.0_dp
+    since_water = 0.0_dp
+    travelled = 0.0_dp
+    line_interval = stage%duration/real(dynamic_lines, dp)
+    if (deck_given(session%deck%output%history_interval)) &
+      line_interval = session%deck%output%history_interval
+    next_line = line_interval
+    next_snapshot = snapshot_interval(session, stage)
+    water_interval = water_pace(session, stage)
+    call record_line(session, 0.0_dp, status)
+    call record_snapshot(session, status)
+    session%last_good = session%state
+    ! The forces that driven nodes feel at the start, for the account of their work.
+    failed = 0
+    if (session%conditions%driven) call soil_force(session%disc, session%ground, &
+      session%motion%coupled, session%state, session%work, failed)
+    do while (done < stage%duration .and. .not. status_failed(status))
+      call timer_start(session%timer, 'soil')
+      call look_at_step(session, travelled)
+      if (allocated(session%conditions%motion)) call conditions_follow(session%conditions, &
+        session%disc%mesh%x, session%state%u, session%motion%step, session%motion%step, &
+        session%state%v)
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
+                                                       session%state)
+      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
+                     failed)
+      call timer_stop(session%timer, 'soil')
+      if (failed > 0) then
+        call report_broken(session, failed, status)
+        return
+      end if
+      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
+                                                       session%state)
+      if (allocated(session%conditions%floor)) call floor_land(session%conditions%floor, &
+        session%disc%mesh%x, session%motion, session%state)
+      done = done + session%motion%step
+      since_water = since_water + session%motion%step
+      session%state%time = session%state%time + session%motion%step
+      if (stage%solve == 'both' .and. since_water >= water_interval) then
+        session%state%time = session%state%time - since_water
+        call move_water(session, stage, since_water)
+        session%state%time = session%state%time + since_water
+        call take_load(session)
+        since_water = 0.0_dp
+        water_interval = water_pace(session, stage)
+      end if
+      if (done < min(next_line, next_snapshot, stage%duration)) cycle
+      call put_off(next_line, done, line_interval)
+      call record_line(session, done/stage%duration, status)
+      session%last_good = session%state
+      speed = sqrt(maxval(sum(session%state%v**2, dim=1)))
+      if (done >= next_snapshot .and. done < stage%duration) then
+        call record_snapshot(session, status)
+        call put_off(next_snapshot, done, snapshot_interval(session, stage))
+      end if
+      if (speed < stage%rest_velocity .and. done > rest_share*stage%duration) exit
+    end do
+    call record_snapshot(session, status)
+  end subroutine run_dynamic
+
+  !> Find the stable step again where the soil has moved enough to change it.
+  subroutine look_at_step(session, travelled)
+    type(session_t), intent(inout) :: session
+    real(dp), intent(inout) :: travelled !! bound of the motion since the last time [m]
+    real(dp) :: spacing
+
+    associate (disc => session%disc, state => session%state, motion => session%motion)
+      if (modulo(state%steps, look_every) /= 0_i8) return
+      travelled = travelled + real(look_every, dp)*motion%step*sqrt(maxval(sum(state%v**2, dim=1)))
+      spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
+      if (travelled < refresh_travel*spacing .and. .not. (motion%stiffens .and. &
+          modulo(state%steps, refresh_every) == 0_i8)) return
+      call motion_shorten(disc, session%ground, state, motion, session%work)
+      travelled = 0.0_dp
+    end associate
+  end subroutine look_at_step
+
+  !> stage, but one soil step at least.
+  real(dp) function water_pace(session, stage) result(interval)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+
+    interval = huge(1.0_dp)
+    if (stage%solve /= 'both') return
+    call face_fluxes(session%seepage, session%disc, session%ground, session%state)
+    interval = seepage_step_limit(session%seepage, session%disc, session%ground, session%state)
+    interval = max(session%motion%step, min(interval, 0.01_dp*stage%duration))
+  end function water_pace
+end module talus_dynamic

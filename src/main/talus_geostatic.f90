@@ -1,0 +1,88 @@
+! SPDX-License-Identifier: MIT
+!> Stage `geostatic`: gravity to equilibrium (src/THEORY.md section 5.3).
+module talus_geostatic
+  use talus_kinds, only: dp
+  use talus_status, only: status_t, status_set, status_failed, status_numeric
+  use talus_text, only: text_of
+  use talus_deck_types, only: stage_t
+  use talus_ground, only: ground_t
+  use talus_session, only: session_t
+  use talus_setup_ground, only: ground_intact
+  use talus_initial, only: initial_water
+  use talus_relax, only: relax_t, relax, largest_motion, relax_balanced, relax_broken
+  use talus_stage_parts, only: report_broken
+  use talus_record, only: record_line, record_snapshot, record_last_good
+  implicit none
+  private
+  public :: run_geostatic, reset
+
+  !> Relaxation steps between two history lines.
+  integer, parameter :: relax_chunk = 500
+
+contains
+
+  !> breaks.
+  subroutine run_geostatic(session, stage, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: pressure(:)
+
+    ! Elastic first: switching gravity on in a plastic soil would leave the marks of its jolt.
+    call settle(session, ground_intact(session%ground, .false.), stage, status)
+    call settle(session, ground_intact(session%ground, .true.), stage, status)
+    if (status_failed(status)) return
+    ! The pore pressure was given for the settled soil.
+    if (session%ground%wet) then
+      pressure = session%state%pressure
+      call initial_water(session%disc, session%ground, pressure, session%state)
+    end if
+    if (stage%reset_displacement) call reset(session)
+    call record_snapshot(session, status)
+  end subroutine run_geostatic
+
+  !> Relax to equilibrium in a simplified ground.
+  subroutine settle(session, ground, stage, status)
+    type(session_t), intent(inout) :: session
+    type(ground_t), intent(in) :: ground
+    type(stage_t), intent(in) :: stage
+    type(status_t), intent(inout) :: status
+    type(relax_t) :: outcome
+    integer :: done
+
+    done = 0
+    do while (.not. status_failed(status))
+      call relax(session%disc, ground, session%conditions, session%motion, stage%tolerance, &
+                 min(relax_chunk, stage%steps_max - done), huge(1.0_dp), 0.0_dp, &
+                 session%state, session%work, outcome)
+      done = done + outcome%steps
+      if (outcome%outcome == relax_broken) call report_broken(session, outcome%failed, status)
+      ! Relaxation brings the force down by a constant factor a step.
+      call record_line(session, min(1.0_dp, log(max(outcome%ratio, stage%tolerance)) &
+                                            /log(stage%tolerance)), status)
+      if (outcome%outcome == relax_balanced) return
+      if (done < stage%steps_max .or. status_failed(status)) cycle
+      session%last_good = session%state
+      call record_last_good(session)
+      call status_set(status, status_numeric, 'stage '//stage%name//': no equilibrium within '// &
+        'steps_max = '//text_of(stage%steps_max)//' steps: out-of-balance force '// &
+        text_of(outcome%ratio)//' of the load, allowed '//text_of(stage%tolerance)// &
+        ', largest displacement '//text_of(largest_motion(session%disc%n, session%state%u, &
+        session%state%u_zero))//' m; the slope does not stand, or steps_max is too small')
+    end do
+  end subroutine settle
+
+  !> Count displacement, strain and the history of the soil from here.
+  subroutine reset(session)
+    type(session_t), intent(inout) :: session
+
+    session%greatest_displacement = 0.0_dp
+    associate (state => session%state)
+      state%u_zero = state%u
+      state%v = 0.0_dp
+      state%ahead = 0.0_dp
+      if (allocated(state%strain)) state%strain = 0.0_dp
+      if (allocated(state%history)) state%history = 0.0_dp
+    end associate
+  end subroutine reset
+end module talus_geostatic

@@ -1,0 +1,107 @@
+! SPDX-License-Identifier: MIT
+!> What several kinds of stage do: take the load, move the water, find balance, go back, report a
+!> node that broke, and keep the times of lines and snapshots.
+module talus_stage_parts
+  use talus_kinds, only: dp, i8
+  use talus_status, only: status_t, status_set, status_numeric
+  use talus_text, only: text_of
+  use talus_deck_types, only: stage_t, deck_given
+  use talus_session, only: session_t
+  use talus_initial, only: weight_masses, weight_load
+  use talus_seepage, only: seepage_shape, seepage_advance
+  use talus_audit, only: audit_load
+  use talus_soil_law, only: soil_inverted
+  use talus_record, only: record_last_good
+  use talus_timer, only: timer_start, timer_stop
+  implicit none
+  private
+  public :: take_load, move_water, take_back, is_due, put_off, snapshot_interval, report_broken
+
+contains
+
+  !> Weight of soil and water now, and tractions.
+  subroutine take_load(session)
+    type(session_t), intent(inout) :: session
+
+    call weight_masses(session%disc, session%ground, session%state)
+    call audit_load(session%disc%n, weight_load(session%ground, session%state%mass, &
+                                                session%conditions%traction), session%state)
+  end subroutine take_load
+
+  !> Move the water for a time, with the soil at rest in its present shape.
+  subroutine move_water(session, stage, step)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: step !! [s]
+
+    call timer_start(session%timer, 'seepage')
+    if (stage%solve == 'both') call seepage_shape(session%seepage, session%disc, session%ground, &
+      session%conditions%inlets, session%state)
+    call seepage_advance(session%seepage, session%disc, session%ground, session%conditions%inlets, &
+      session%state%time - session%stage_start, step, session%state)
+    call timer_stop(session%timer, 'seepage')
+  end subroutine move_water
+
+  !> Return to the last good state; the steps in vain are counted all the same.
+  subroutine take_back(session)
+    type(session_t), intent(inout) :: session
+    integer(i8) :: steps, seepage_steps
+
+    steps = session%state%steps
+    seepage_steps = session%state%seepage_steps
+    session%state = session%last_good
+    session%state%steps = steps
+    session%state%seepage_steps = seepage_steps
+  end subroutine take_back
+
+  !> True when a time is reached, but for round-off.
+  pure logical function is_due(time, due)
+    real(dp), intent(in) :: time, due !! [s]
+
+    is_due = time >= due*(1.0_dp - 1.0e-9_dp)
+  end function is_due
+
+  !> Put off a regular event to its first time after `time`.
+  pure subroutine put_off(due, time, interval)
+    real(dp), intent(inout) :: due          !! [s]
+    real(dp), intent(in) :: time, interval  !! [s]
+
+    if (.not. is_due(time, due)) return
+    due = due + interval
+    if (interval > 0.0_dp .and. is_due(time, due)) &
+      due = due + interval*aint((time - due)/interval + 1.0_dp)
+  end subroutine put_off
+
+  !> Time between two snapshots of a stage [s].
+  pure real(dp) function snapshot_interval(session, stage) result(interval)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+
+    interval = huge(1.0_dp)
+    if (deck_given(session%deck%output%snapshot_interval)) then
+      interval = session%deck%output%snapshot_interval
+    else if (stage%snapshots > 0) then
+      interval = stage%duration/real(stage%snapshots, dp)
+    end if
+  end function snapshot_interval
+
+  !> Report the node that broke and save the last good state.
+  subroutine report_broken(session, failed, status)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: failed !! code*n + node
+    type(status_t), intent(inout) :: status
+    integer :: node, code
+    character(:), allocatable :: what
+
+    code = (failed - 1)/session%disc%n
+    node = failed - code*session%disc%n
+    what = 'the stress is not a finite number'
+    if (code == soil_inverted) what = 'the soil is turned inside out (det F <= 0)'
+    call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
+      ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
+      ', node '//text_of(node)//' at ('//text_of(session%disc%mesh%x(1, node))//', '// &
+      text_of(session%disc%mesh%x(2, node))//') m: '//what//'; last good state at '// &
+      text_of(session%last_good%time)//' s saved as snapshot last_good')
+    call record_last_good(session)
+  end subroutine report_broken
+end module talus_stage_parts

@@ -57,7 +57,7 @@ def depth_of_front(depth, saturation):
 
 def balance(name, result):
     worst = np.max(np.abs(result.history()["water_error"]))
-    case.target(f"{name}: water error", worst, 1e-12, "issue: fluxes are exchanged, only round-off")
+    case.target(f"{name}: water error", worst, 1e-12, "required: fluxes are exchanged, only round-off")
 
 
 def flood(soil):

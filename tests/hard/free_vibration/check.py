@@ -53,8 +53,8 @@ def soft_modes(square):
 def spectra():
     curves = {}
     limits = {
-        0: (0.05, "issue 2"),
-        3: (0.10, "issue 2"),
+        0: (0.05, "required"),
+        3: (0.10, "required"),
         4: (0.20, "our own: smoothing over 4 h is physical"),
     }
     for perturbation in (0.0, 0.3) if case.full else (0.3,):
@@ -62,8 +62,8 @@ def spectra():
             _, square = case.spectrum("square.nml", changes(0.05, perturbation, factor))
             what = f"{name_of(factor)}, nodes perturbed by {perturbation} h"
             zero, soft = soft_modes(square)
-            case.target(f"{what}: zero modes", zero, 3, "issue 3: exactly three rigid modes", low=3)
-            case.target(f"{what}: spurious soft modes", soft, 0, "issue 3", low=0)
+            case.target(f"{what}: zero modes", zero, 3, "required: exactly three rigid modes", low=3)
+            case.target(f"{what}: spurious soft modes", soft, 0, "required", low=0)
             error = np.abs(square[3:6] / REFERENCE - 1).max()
             case.target(f"{what}: error of the next three omega^2", error, limit, why)
             if perturbation > 0:
@@ -107,7 +107,7 @@ def ring(cells, factor):
     what = f"{name_of(factor)}, {cells + 1} x {cells + 1} perturbed nodes"
     case.check_true(f"{what}: balanced when let go", result.summary["failed"] == ".false.")
     case.check_true(f"{what}: {steps:.0f} steps were taken", steps >= STEPS)
-    case.target(f"{what}: energy drift over 1e5 steps", abs(drift), 1e-6, "issues 2 and 3")
+    case.target(f"{what}: energy drift over 1e5 steps", abs(drift), 1e-6, "required")
     case.check(f"{what}: energy error of the audit", abs(history["energy_error"][-1]), 1e-6, "the same")
     return time - time[0], np.abs(total / total[1 : part + 1].mean() - 1)
 

@@ -52,7 +52,7 @@ for what, name, replace, held in (
     curves[what] = other[3]
     for quantity, one, two in (("greatest", largest, other[0]), ("mean", mean, other[1])):
         change = abs(two / one - 1.0)
-        case.target(f"{what}: change of the {quantity} displacement", change, 0.01, "issue", held=(0.0, held))
+        case.target(f"{what}: change of the {quantity} displacement", change, 0.01, "required", held=(0.0, held))
     case.check(f"{what}: change of the time of failure", abs(other[2] / trigger - 1.0), 0.15, "held")
 case.picture(
     "Largest displacement during the slide",
@@ -80,6 +80,8 @@ case.note(
     "Twice the stabilisation misses: it resists where F, smoothed over ell, differs from the motion of the "
     "nodes, and a shear band is such a place. The slope then fails later, in a wetter state, and slides less "
     "far. Tried: a tolerance of 1e-5 in place of 1e-4 and storm steps of 900 s move the times of failure of "
-    "both by under 3 % and leave their distance of 10 %; with a stabilisation of 0.004 single nodes fly off."
+    "both by under 3 % and leave their distance of 10 %; with a stabilisation of 0.004 single nodes fly off. "
+    "A residual of the F of the first level brings the times of failure to within 4 %, but lets nodes of the "
+    "sliding mass fly off at 0.05 (17 m), and the free square's frequencies fall by 10 % at ell = 3h."
 )
 sys.exit(case.verdict())

@@ -103,7 +103,7 @@ for name, ratio in LEVELS.items():
     if ratio == 0:
         curves["exact"] = (x, exact * 1e6, "k--")
         case.target("pulse, one level, order", order.min(), 3.0, "second order in space and time", low=1.9)
-        case.target("pulse, one level, error at the finest spacing", found[-1], 0.01, "analytic, issue 3, M5")
+        case.target("pulse, one level, error at the finest spacing", found[-1], 0.01, "analytic, required, M5")
     else:
         case.check(f"pulse, {name}, 1.5 less the order", 1.5 - order.min(), 0.0, "converges with ell")
 
@@ -125,7 +125,7 @@ for name, ratio in LEVELS.items():
             "V, but for the ringing behind a jump",
         )
         if spacing == 0.05:
-            case.target(f"step, {name}, arrival at 5 m, h = 0.05 m", error, 0.005, "analytic, issue 3, M5")
+            case.target(f"step, {name}, arrival at 5 m, h = 0.05 m", error, 0.005, "analytic, required, M5")
 
 for name, ratio in LEVELS.items():
     for spacing in (0.1, 0.05, 1 / 30) if case.full else (0.05,):
@@ -141,7 +141,7 @@ for name, ratio in LEVELS.items():
         case.study(f"square, {name}", case.run("square.nml", change), spacing, error)
         if spacing == 0.05:
             limit = 0.05 if ratio == 0 else 0.10
-            case.target(f"square, {name}, three lowest omega^2", error, limit, "issue 2, 21 x 21 nodes")
+            case.target(f"square, {name}, three lowest omega^2", error, limit, "required, 21 x 21 nodes")
 
 case.picture("Pulses after 0.02 s", "x in m", "displacement in micrometres", curves)
 sys.exit(case.verdict())

@@ -31,7 +31,7 @@ def factor_of(result):
 
 
 def within(what, result):
-    """The factor printed with its criterion, between the limits of issue and literature."""
+    """The factor printed with its criterion, between the limits required and of the literature."""
     factor = factor_of(result)
     print(
         f"     {what}: {factor:.4f} in {result.summary['factor_trials']} trials: "

@@ -55,7 +55,8 @@ class Case:
     def run(self, deck, replace=(), threads=1, code=0, name=None, repeat=1):
         """Run a deck, with (old, new) text replacements, and return its Result.
 
-        `code`: the exit code expected, or a tuple of those allowed. Repeated runs (their fields are the same) give the Result of median wall time.
+        `code`: the exit code expected, or a tuple of those allowed. Repeated runs (their fields are the same)
+        give the Result of median wall time.
         """
         done = [self._run(deck, replace, threads, code, name) for _ in range(repeat)]
         done.sort(key=lambda result: float(result.summary.get("wall_seconds", 0.0)))

@@ -89,7 +89,7 @@ def weights(spacings):
     smooth = 0.25 * (values[:-2] + 2 * values[1:-1] + values[2:])
     off = np.abs(smooth / WEIGHT - (rows[1:-1] - HEIGHT)).max() / HEIGHT
     case.target("stress averaged over neighbouring rows: largest error over rho g H", off, 0.05, "our own")
-    case.target("energy error of the dynamic stage", abs(float(run.summary["energy_error"])), 1e-3, "required")
+    case.target("energy error of the dynamic stage", abs(float(run.summary["energy_error"])), 1e-3, "limit")
     largest = np.abs(stress - exact).max() / (WEIGHT * HEIGHT)
     case.note(
         "At a jump of stiffness stress alternates from row to row; the stabilisation, which carries a "
@@ -144,7 +144,7 @@ def flows(spacings):
         case.target(
             f"h = {spacing} m: heads are monotone: largest fall [m]", falls, 1e-5, "Newton's tolerance"
         )
-        case.target(f"h = {spacing} m: water error", abs(float(run.summary["water_error"])), 1e-12, "required")
+        case.target(f"h = {spacing} m: water error", abs(float(run.summary["water_error"])), 1e-12, "limit")
         wrong = arithmetic_flux(spacing) / series - 1
     case.remedy(
         "flux between soils with arithmetic means of conductivity at faces (computed here on the same rows); "
@@ -186,7 +186,7 @@ def arithmetic_flux(spacing):
 
 def perched():
     run = case.run("rain.nml")
-    case.target("rain that perches: water error", abs(float(run.summary["water_error"])), 1e-12, "required")
+    case.target("rain that perches: water error", abs(float(run.summary["water_error"])), 1e-12, "limit")
     y, pressure = run.nodes[:, 1], run.field("pore_pressure")
     clay = (y > 0.625) & (y < 1.225)
     ponded = pressure[(y > 1.225) & (y < 1.3)].min()

@@ -103,7 +103,7 @@ for name, ratio in LEVELS.items():
     if ratio == 0:
         curves["exact"] = (x, exact * 1e6, "k--")
         case.target("pulse, one level, order", order.min(), 3.0, "second order in space and time", low=1.9)
-        case.target("pulse, one level, error at the finest spacing", found[-1], 0.01, "analytic, required, M5")
+        case.target("pulse, one level, error at the finest spacing", found[-1], 0.01, "analytic, M5")
     else:
         case.check(f"pulse, {name}, 1.5 less the order", 1.5 - order.min(), 0.0, "converges with ell")
 

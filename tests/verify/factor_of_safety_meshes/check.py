@@ -63,9 +63,7 @@ two = "two levels, ell = 1.4 m"
 for series in ("one level", two):
     fine = found[series, 0.227]
     case.target(f"factor of safety, {series}, h = 0.227 m", fine, 1.41, "S1; charts 1.380", low=1.35)
-case.target(
-    f"drift of the factor from h = 0.454 to 0.227 m, {two}", drift(two), 0.01, "D2; published 5.9 %"
-)
+case.target(f"drift of the factor from h = 0.454 to 0.227 m, {two}", drift(two), 0.01, "D2; published 5.9 %")
 case.remedy(
     "a factor of safety that drifts with the mesh (psi = 0); remedy: smoothing over a fixed length",
     "one level: " + ", ".join(f"{found['one level', h]:.4f}" for h in PUBLISHED) + " for h = 0.908, 0.454, "

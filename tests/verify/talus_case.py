@@ -100,8 +100,8 @@ class Case:
             sys.exit(f"{name}: exit code {done.returncode}, expected {code}\n{done.stderr}")
         return Result(place, name, done)
 
-    def spectrum(self, deck, replace=(), stage=None):
-        """`talus check --spectrum` of a stage (the last if not named): stable step [s], omega^2 ascending."""
+    def inspect(self, deck, replace=()):
+        """Lines of `talus check --spectrum`."""
         text = (self.folder / deck).read_text()
         for old, new in replace:
             if old not in text:
@@ -115,8 +115,18 @@ class Case:
         )
         if done.returncode != 0:
             sys.exit(f"{deck}: exit code {done.returncode}\n{done.stderr}")
+        return done.stdout.splitlines()
+
+    def seepage_steps(self, deck, replace=()):
+        """Of the last stage with water: limit of monotone explicit steps, of stable ones, by LAPACK [s]."""
+        names = ("  explicit seepage step", "  stable seepage step", "  2/lambda_max by LAPACK")
+        lines = self.inspect(deck, replace)
+        return [float([k for k in lines if k.startswith(name)][-1].split()[3]) for name in names]
+
+    def spectrum(self, deck, replace=(), stage=None):
+        """`talus check --spectrum` of a stage (the last if not named): stable step [s], omega^2 ascending."""
         step, squares, here = None, [], stage is None
-        for line in done.stdout.splitlines():
+        for line in self.inspect(deck, replace):
             words = line.split()
             if line.startswith("stage "):
                 here = stage is None or words[1] == stage

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 files, 2 bad input, 3 numerics.
+!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 no results, 2 bad input, 3 numerics.
 program talus
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit

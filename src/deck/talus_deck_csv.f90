@@ -96,7 +96,7 @@ contains
     integer, intent(in) :: row, column
     character(*), intent(in) :: name, allowed
 
-    call table_csv_fault(table, table%lines(row), name//' = '//text_of(table%values(column, row))// &
-      ' is not allowed; allowed: '//allowed)
+    call table_csv_fault(table, table%lines(row), name//' = '// &
+      text_of(table%values(column, row))//' is not allowed; allowed: '//allowed)
   end subroutine refuse
 end module talus_deck_csv

@@ -8,7 +8,7 @@ module talus_deck
   use talus_deck_types, only: deck_t
   use talus_deck_store, only: store_t
   use talus_deck_path, only: path_folder, path_stem
-  use talus_deck_file, only: file_read
+  use talus_read_file, only: file_read
   use talus_deck_read, only: deck_read
   use talus_deck_derive, only: deck_derive
   use talus_deck_fill, only: deck_fill
@@ -17,6 +17,9 @@ module talus_deck
   implicit none
   private
   public :: deck_load, deck_load_text, deck_load_store
+
+  !> Largest deck [bytes].
+  integer, parameter :: bytes_max = 4000000
 
 contains
 
@@ -28,7 +31,7 @@ contains
     type(status_t), intent(inout) :: status
     character(:), allocatable :: text, problem
 
-    call file_read(path, text, problem)
+    call file_read(path, 'the working folder', 'a namelist', bytes_max, text, problem)
     if (len(problem) > 0) then
       call messages_start(messages, path)
       call messages_error(messages, 0, problem)

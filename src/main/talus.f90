@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 files, 2 bad input, 3 numerics.
+!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 no results, 2 bad input, 3 numerics.
 program talus
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
@@ -26,7 +26,7 @@ program talus
   type(command_t) :: command
   type(status_t) :: status
   type(deck_t) :: deck
-  character(:), allocatable :: text, base
+  character(:), allocatable :: text, base, warning
 
   call command_read(command, status)
   if (.not. status_failed(status)) then
@@ -35,9 +35,13 @@ program talus
       call load
       if (.not. status_failed(status)) &
         call place_results(deck, command%output, command%overwrite, base, status)
-      if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, status)
+      if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, &
+        warning, status)
       if (.not. status_failed(status)) &
         write (*, '(3a)') 'results: ', base, '.h5, _history.csv, _summary.txt'
+      if (allocated(warning)) then
+        if (len(warning) > 0) write (error_unit, '(2a)') 'talus: warning: ', warning
+      end if
     case ('check')
       call load
       if (.not. status_failed(status)) call check_deck(deck, command%spectrum, status)

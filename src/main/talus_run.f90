@@ -72,16 +72,18 @@ contains
   end subroutine run_prepare
 
   !> Run every stage of a deck and write its results to `base`.h5 and files beside it.
-  subroutine run_deck(deck, base, overwrite, status)
+  subroutine run_deck(deck, base, overwrite, warning, status)
     type(deck_t), intent(in) :: deck
     character(*), intent(in) :: base     !! path of the result files without ending
     logical, intent(in) :: overwrite     !! results that exist may be replaced
+    character(:), allocatable, intent(out) :: warning !! about what the run found, '' for none
     type(status_t), intent(inout) :: status
     type(session_t) :: session
     type(status_t) :: closing
     logical :: slides
     integer :: i
 
+    warning = ''
     call run_prepare(deck, session, status)
     if (status_failed(status)) return
     session%base = base
@@ -102,7 +104,7 @@ contains
     call timer_stop(session%timer, 'stages')
     call history_store(session%history, session%result%path, closing)
     call history_close(session%history, closing)
-    call report_summary(session, status, closing)
+    call report_summary(session, status, warning, closing)
     if (status_failed(closing)) call status_set(status, closing%code, closing%message)
   end subroutine run_deck
 

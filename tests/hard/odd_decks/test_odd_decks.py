@@ -122,6 +122,7 @@ class OddDecks(unittest.TestCase):
         outcome = run(("run", {"gravity": 0.0}), *model(), ("stage", GRAVITY), ("stage", DYNAMIC))
         self.stands(outcome)
         self.assertEqual(float(outcome.summary["maximum_displacement"]), 0.0)
+        self.assertNotIn("warning", outcome.summary)
 
     def test_storm_without_geostatic(self):
         outcome = run(*rainy(), ("stage", STORM))
@@ -193,6 +194,27 @@ class OddDecks(unittest.TestCase):
         outcome = run(*model(), ("stage", {**GRAVITY, "steps_max": 10}))
         self.assertEqual(outcome.code, 3)
         self.assertRegex(outcome.message, r"out-of-balance force 0\.[1-9]")
+
+    def test_every_probe_has_its_columns(self):
+        points = [0.01 * i for i in range(201)]
+        outcome = run(*model(), ("output", {"probe_x": points, "probe_y": points}), ("stage", GRAVITY))
+        self.stands(outcome)
+        columns = outcome.history[0].keys()
+        self.assertEqual(sum(name.startswith("probe_") for name in columns), 402)
+        self.assertIn("probe_201_displacement_y", columns)
+
+    def test_names_are_words_in_the_summary(self):
+        outcome = run(*model({**PLASTIC, "name": "b = c"}), ("stage", GRAVITY), ("stage", DYNAMIC))
+        self.stands(outcome)
+        self.assertIn("cone_fit_b___c", outcome.summary)
+        self.assertRegex(outcome.summary["scaling_and_damping"], r"^gravity: .*; slide: .* damping 0\.0$")
+
+    def test_a_body_that_falls_freely_is_warned_of(self):
+        body = [item for item in model() if item[0] != "boundary"]
+        outcome = run(*body, ("stage", {**DYNAMIC, "duration": 1.0}))
+        self.stands(outcome)
+        self.assertIn("warning: the soil moved 4.9", outcome.message)
+        self.assertIn("further than the model is wide and high (2.828 m)", outcome.summary["warning"])
 
     def test_a_missing_boundary_is_told_before_anything_is_written(self):
         outcome = run(

@@ -7,7 +7,8 @@ module talus_rayleigh
   use talus_sum, only: sum_products
   implicit none
   private
-  public :: direction_t, direction_blend, direction_residual, direction_without, direction_unit
+  public :: direction_t, direction_blend, direction_residual, direction_unit, &
+    direction_across
   public :: rayleigh_best
 
   type :: direction_t
@@ -15,6 +16,10 @@ module talus_rayleigh
     real(dp), allocatable :: m(:,:) !! mass times it, M d [kg], (2,n)
     real(dp), allocatable :: k(:,:) !! stiffness times it, K d [N/m], (2,n)
   end type direction_t
+
+  !> A direction that keeps a smaller part of its length across others is round-off: the root of
+  !> the relative precision.
+  real(dp), parameter :: share_least = 1.0e-8_dp
 
   interface
     subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
@@ -59,24 +64,49 @@ contains
     !$omp end parallel do
   end subroutine direction_residual
 
-  !> Take from `other` its part along a direction of unit length.
-  subroutine direction_without(direction, other)
-    type(direction_t), intent(in) :: direction
-    type(direction_t), intent(inout) :: other
-
-    call direction_blend(-sum_products(size(other%d), other%d, direction%m), direction, 1.0_dp, other)
-  end subroutine direction_without
-
   !> Give a direction unit length, d.M d = 1. `regular` is false, and nothing changes, where it has
   !> no length to speak of.
   subroutine direction_unit(direction, regular)
     type(direction_t), intent(inout) :: direction
     logical, intent(out) :: regular
+
+    call scale_length(direction, tiny(1.0_dp), regular)
+  end subroutine direction_unit
+
+  !> Take from a direction its parts along one or two others of unit length, orthogonal to each other,
+  !> and give what is left unit length. `regular` is false where next to nothing is left: that is
+  !> round-off, and what is left of K d is not the stiffness of what is left of d. So there are
+  !> never more directions than free displacements.
+  subroutine direction_across(other, regular, one, two)
+    type(direction_t), intent(inout) :: other
+    logical, intent(out) :: regular
+    type(direction_t), intent(in) :: one
+    type(direction_t), intent(in), optional :: two
+
+    call direction_unit(other, regular)
+    if (.not. regular) return
+    call take_part(one, other)
+    if (present(two)) call take_part(two, other)
+    call scale_length(other, share_least**2, regular)
+  end subroutine direction_across
+
+  subroutine take_part(one, other)
+    type(direction_t), intent(in) :: one
+    type(direction_t), intent(inout) :: other
+
+    call direction_blend(-sum_products(size(other%d), other%d, one%m), one, 1.0_dp, other)
+  end subroutine take_part
+
+  !> Give a direction unit length unless the square of its length is below `least`.
+  subroutine scale_length(direction, least, regular)
+    type(direction_t), intent(inout) :: direction
+    real(dp), intent(in) :: least
+    logical, intent(out) :: regular
     real(dp) :: square, factor
     integer :: i
 
     square = sum_products(size(direction%d), direction%d, direction%m)
-    regular = square > tiny(1.0_dp)
+    regular = square > least
     if (.not. regular) return
     factor = 1.0_dp/sqrt(square)
     !$omp parallel do default(none) shared(direction, factor) private(i) schedule(static)
@@ -86,7 +116,7 @@ contains
       direction%k(:, i) = factor*direction%k(:, i)
     end do
     !$omp end parallel do
-  end subroutine direction_unit
+  end subroutine scale_length
 
   !> Shares of the directions in the sum of unit length with the greatest quotient. All are of unit
   !> length, and orthogonal with respect to M.

@@ -14,8 +14,8 @@ module talus_time_step
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_residual, only: residual_gather
   use talus_inertia, only: inertia_apply
-  use talus_rayleigh, only: direction_t, direction_blend, direction_residual, direction_without, &
-    direction_unit, rayleigh_best
+  use talus_rayleigh, only: direction_t, direction_blend, direction_residual, direction_unit, &
+    direction_across, rayleigh_best
   use talus_force, only: force_one_level, force_unbalanced
   use talus_soil_step, only: work_t, motion_t
   implicit none
@@ -66,15 +66,9 @@ contains
       call displace(disc, motion, ahead%m, ahead%d)
       call stiffness_apply(disc, ground, state, bulk, nothing, ahead%d, work)
       ahead%k = work%force
-      call direction_unit(ahead, regular)
+      call direction_across(ahead, regular, now)
       if (.not. regular) exit
-      call direction_without(now, ahead)
-      call direction_unit(ahead, regular)
-      if (turned) then
-        call direction_without(now, back)
-        call direction_without(ahead, back)
-        call direction_unit(back, turned)
-      end if
+      if (turned) call direction_across(back, turned, now, ahead)
       before = square
       call rayleigh_best(now, ahead, back, turned, share, square)
       ! What is added in this turn is the third direction of the next.

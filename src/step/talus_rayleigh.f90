@@ -38,6 +38,9 @@ module talus_rayleigh
 
   !> Most turns of a search.
   integer, parameter :: turns_most = 200
+  !> A direction that keeps a smaller part of its length across others is round-off: the root of
+  !> the relative precision.
+  real(dp), parameter :: share_least = 1.0e-8_dp
 
 contains
 
@@ -76,16 +79,10 @@ contains
     logical :: regular
 
     associate (now => search%now, ahead => search%ahead, back => search%back)
-      call direction_unit(ahead, regular)
+      call direction_across(ahead, regular, now)
       search%done = .not. regular
       if (search%done) return
-      call direction_without(now, ahead)
-      call direction_unit(ahead, regular)
-      if (search%turned) then
-        call direction_without(now, back)
-        call direction_without(ahead, back)
-        call direction_unit(back, search%turned)
-      end if
+      if (search%turned) call direction_across(back, search%turned, now, ahead)
       before = search%quotient
       call rayleigh_best(search, share)
       ! What is added in this turn is the third direction of the next.
@@ -130,25 +127,49 @@ contains
     !$omp end parallel do
   end subroutine direction_residual
 
-  !> Take from `other` its part along a direction of unit length.
-  subroutine direction_without(direction, other)
-    type(direction_t), intent(in) :: direction
-    type(direction_t), intent(inout) :: other
-
-    call direction_blend(-sum_products(size(other%d), other%d, direction%m), direction, 1.0_dp, &
-      other)
-  end subroutine direction_without
-
   !> Give a direction unit length, d.M d = 1. `regular` is false, and nothing changes, where it has
   !> no length to speak of.
   subroutine direction_unit(direction, regular)
     type(direction_t), intent(inout) :: direction
     logical, intent(out) :: regular
+
+    call scale_length(direction, tiny(1.0_dp), regular)
+  end subroutine direction_unit
+
+  !> Take from a direction its parts along one or two others of unit length, orthogonal to each other,
+  !> and give what is left unit length. `regular` is false where next to nothing is left: that is
+  !> round-off, and what is left of K d is not the stiffness of what is left of d. So there are
+  !> never more directions than free displacements.
+  subroutine direction_across(other, regular, one, two)
+    type(direction_t), intent(inout) :: other
+    logical, intent(out) :: regular
+    type(direction_t), intent(in) :: one
+    type(direction_t), intent(in), optional :: two
+
+    call direction_unit(other, regular)
+    if (.not. regular) return
+    call take_part(one, other)
+    if (present(two)) call take_part(two, other)
+    call scale_length(other, share_least**2, regular)
+  end subroutine direction_across
+
+  subroutine take_part(one, other)
+    type(direction_t), intent(in) :: one
+    type(direction_t), intent(inout) :: other
+
+    call direction_blend(-sum_products(size(other%d), other%d, one%m), one, 1.0_dp, other)
+  end subroutine take_part
+
+  !> Give a direction unit length unless the square of its length is below `least`.
+  subroutine scale_length(direction, least, regular)
+    type(direction_t), intent(inout) :: direction
+    real(dp), intent(in) :: least
+    logical, intent(out) :: regular
     real(dp) :: square, factor
     integer :: i
 
     square = sum_products(size(direction%d), direction%d, direction%m)
-    regular = square > tiny(1.0_dp)
+    regular = square > least
     if (.not. regular) return
     factor = 1.0_dp/sqrt(square)
     !$omp parallel do default(none) shared(direction, factor) private(i) schedule(static)
@@ -158,7 +179,7 @@ contains
       direction%k(:, i) = factor*direction%k(:, i)
     end do
     !$omp end parallel do
-  end subroutine direction_unit
+  end subroutine scale_length
 
   !> Shares of the directions in the sum of unit length with the greatest quotient. All are of unit
   !> length, and orthogonal with respect to M.

@@ -4,7 +4,7 @@
 import math
 import re
 
-from case_list import GROUPS, group_of
+from case_list import GROUPS, group_of, without_case
 
 INTRODUCTION = """\
 Written by `./talus verify`, which runs every case of [verify]({tests}/verify) and [hard]({tests}/hard)
@@ -90,7 +90,7 @@ def report_text(stories, missing, pictures, run, tests):
 
 
 def verdict(stories, missing):
-    """The first lines: what failed, what is not met, what has not run."""
+    """The first lines: what failed, what is not met, what has not run, what has no case."""
     targets = [(s, t) for s in stories for t in s["targets"]]
     missed = [(s, t) for s, t in targets if not t["met"]]
     lines = [""]
@@ -109,6 +109,9 @@ def verdict(stories, missing):
         lines += [f"**All {len(targets)} targets are met.**"]
     if missing:
         lines += ["", f"No results yet of: {', '.join(case.label for case in missing)}."]
+    absent = without_case([s["id"] for s in stories] + [case.id for case in missing])
+    if absent:
+        lines += ["", f"**Without a case: {', '.join(absent)}.**"]
     return "\n".join(lines)
 
 

@@ -18,6 +18,9 @@ import tempfile
 import h5py
 import numpy as np
 
+# [s], for one run of the program: within the time of a case (run_cases.py), so that the case can say which.
+RUN_LIMIT = 500.0
+
 
 class Case:
     """One verification case: runs decks in a scratch folder and collects checks."""
@@ -81,24 +84,20 @@ class Case:
             if other.suffix in (".csv", ".txt"):
                 (place / other.name).write_bytes(other.read_bytes())
         (place / f"{name}.nml").write_text(text)
-        done = subprocess.run(
-            [
-                self.options.program,
-                "run",
-                f"{name}.nml",
-                "--threads",
-                str(threads),
-                "--output",
-                ".",
-                "--overwrite",
-            ],
-            cwd=place,
-            capture_output=True,
-            text=True,
-        )
+        words = ["run", f"{name}.nml", "--threads", str(threads), "--output", ".", "--overwrite"]
+        done = self._talus(words, place)
         if done.returncode not in (code if isinstance(code, tuple) else (code,)):
             sys.exit(f"{name}: exit code {done.returncode}, expected {code}\n{done.stderr}")
         return Result(place, name, done)
+
+    def _talus(self, words, place):
+        """The program in a folder, done; the case ends where it takes longer than RUN_LIMIT."""
+        try:
+            return subprocess.run(
+                [self.options.program, *words], cwd=place, capture_output=True, text=True, timeout=RUN_LIMIT
+            )
+        except subprocess.TimeoutExpired:
+            sys.exit(f"{place.name}: {words[0]} stopped after {RUN_LIMIT:.0f} s")
 
     def inspect(self, deck, replace=()):
         """Lines of `talus check --spectrum`."""
@@ -110,9 +109,7 @@ class Case:
         place = self.scratch / "spectrum"
         place.mkdir(parents=True, exist_ok=True)
         (place / deck).write_text(text)
-        done = subprocess.run(
-            [self.options.program, "check", deck, "--spectrum"], cwd=place, capture_output=True, text=True
-        )
+        done = self._talus(["check", deck, "--spectrum"], place)
         if done.returncode != 0:
             sys.exit(f"{deck}: exit code {done.returncode}\n{done.stderr}")
         return done.stdout.splitlines()

@@ -16,8 +16,8 @@ import time
 from pathlib import Path
 
 from case_list import find_cases, select_cases
-from report import load_stories, store_run, store_story, write_report
-from report_text import number
+from report import add_orders, load_stories, store_run, store_story, write_report
+from report_text import number, study_lines
 
 TESTS = Path(__file__).resolve().parents[1]
 TIME_LIMIT = 600.0  # [s], for one case
@@ -140,6 +140,7 @@ def run_all(cases, options, logs):
                     f"{state:4s} {case.label:34.34s} {story['case_seconds']:6.1f} s  {headline(story):.90s}",
                     flush=True,
                 )
+                print_study(story)
                 if state == "FAIL":
                     show_failure(logs / f"{case.key}.log")
         except KeyboardInterrupt:
@@ -149,6 +150,13 @@ def run_all(cases, options, logs):
             print(f"interrupted; what {len(stories)} cases found is kept for the next report")
             sys.exit(130)
     return stories
+
+
+def print_study(story):
+    """The rows of the case's study in mesh size."""
+    add_orders(story)
+    if story.get("runs"):
+        print("\n".join(f"       {line}" for line in study_lines(story)), flush=True)
 
 
 def show_failure(log):

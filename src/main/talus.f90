@@ -13,6 +13,7 @@ program talus
   use talus_run, only: run_deck
   use talus_bench, only: bench
   use talus_place, only: place_results
+  use talus_wait, only: wait_briefly
   use talus_version, only: version, git_hash
   use omp_lib, only: omp_set_num_threads
   implicit none
@@ -28,6 +29,7 @@ program talus
   type(deck_t) :: deck
   character(:), allocatable :: text, base, warning
 
+  call wait_briefly
   call command_read(command, status)
   if (.not. status_failed(status)) then
     select case (command%word)

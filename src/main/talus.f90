@@ -4,6 +4,7 @@ program talus
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use talus_command, only: command_t, command_read, command_help
+  use talus_waiting, only: wait_briefly
   use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t
   use talus_deck_messages, only: messages_t, messages_text
@@ -13,7 +14,6 @@ program talus
   use talus_run, only: run_deck
   use talus_bench, only: bench
   use talus_place, only: place_results
-  use talus_wait, only: wait_briefly
   use talus_version, only: version, git_hash
   use omp_lib, only: omp_set_num_threads
   implicit none
@@ -29,9 +29,9 @@ program talus
   type(deck_t) :: deck
   character(:), allocatable :: text, base, warning
 
-  call wait_briefly
   call command_read(command, status)
   if (.not. status_failed(status)) then
+    if (any(command%word == ['run  ', 'check', 'bench'])) call wait_briefly
     select case (command%word)
     case ('run')
       call load

@@ -8,7 +8,8 @@ program talus
   use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t
   use talus_deck_messages, only: messages_t, messages_text
-  use talus_deck, only: deck_load
+  use talus_deck, only: deck_load, deck_verdict
+  use talus_setup_disc, only: setup_check_file
   use talus_deck_manual, only: manual_keys, manual_markdown
   use talus_check, only: check_deck
   use talus_run, only: run_deck
@@ -73,6 +74,12 @@ contains
     integer :: threads
 
     call deck_load(command%argument, deck, messages, status)
+    if (status_failed(status)) then
+      ! A sound deck has its node file read once, when the model is made.
+      call setup_check_file(deck, messages)
+      status = status_t()
+      call deck_verdict(messages, status)
+    end if
     write (error_unit, '(a)', advance='no') messages_text(messages)
     if (status_failed(status)) return
     threads = deck%run%threads

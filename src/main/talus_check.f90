@@ -25,6 +25,8 @@ module talus_check
 
   !> Steps that are timed on a copy, to estimate the run time.
   integer, parameter :: trial_steps = 10
+  !> Sub-steps of the water after which the trial is cut short.
+  integer, parameter :: trial_seepage_steps = 200
   !> What looks at the step, audits and output add to the steps.
   real(dp), parameter :: overhead = 1.5_dp
 
@@ -223,13 +225,13 @@ contains
   end function typical_steps
 
   !> Sub-steps of the water and their time, from a trial with the state at the start: one step of
-  !> the storm clock, or a hundredth of a dynamic stage.
+  !> the storm clock, or a hundredth of a dynamic stage, or as much as some sub-steps reach.
   subroutine print_seepage(session, number, spectrum, estimate)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
     real(dp), intent(inout) :: estimate !! of the stage so far [s]
-    real(dp) :: began, trial
+    real(dp) :: began, trial, reached
     integer(i8) :: before
 
     associate (seepage => session%seepage, disc => session%disc, ground => session%ground, &
@@ -246,10 +248,12 @@ contains
       session%last_good = state
       before = state%seepage_steps
       began = timer_now()
-      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state)
-      estimate = estimate + (timer_now() - began)*stage%duration/trial
+      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state, &
+                           trial_seepage_steps, reached)
+      estimate = estimate + (timer_now() - began)*stage%duration/reached
       write (output_unit, '(2a)') '  seepage steps, about    ', &
-        text_of(real(state%seepage_steps - before, dp)*stage%duration/trial, 3)
+        text_of(real(state%seepage_steps - before, dp)*stage%duration/reached, 3)// &
+        trim(merge(', by the first few', '                  ', reached < 0.999_dp*trial))
       state = session%last_good
     end associate
   end subroutine print_seepage

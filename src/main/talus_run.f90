@@ -15,6 +15,7 @@ module talus_run
   use talus_soil_step, only: work_allocate
   use talus_conditions, only: inlets_t
   use talus_setup_conditions, only: setup_conditions, setup_steady
+  use talus_setup_support, only: setup_support
   use talus_steady, only: steady_solve
   use talus_setup_restart, only: setup_restart
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
@@ -61,7 +62,9 @@ contains
     do i = 1, size(deck%stage)
       call setup_conditions(deck, session%disc, deck%stage(i)%name, session%conditions, status)
       if (status_failed(status)) return
+      call setup_support(deck, session%disc, deck%stage(i), session%conditions, status)
     end do
+    if (status_failed(status)) return
     if (len(deck%initial%from_result) > 0) then
       call setup_restart(session, status)
     else

@@ -1,145 +1,191 @@
 ! SPDX-License-Identifier: MIT
-!> Reads a table of numbers from a CSV file and says exactly what is wrong with a bad one.
+!> Reads a table of numbers from a CSV file and says exactly what is wrong with a bad one: all that
+!! is wrong, each with its line.
 !!
-!! First line: the column names. Then one row a line, numbers separated by commas. Blank lines
-!! and lines that start with # are skipped.
+!! First line: the column names, in any case, quoted or not. Then one row a line, numbers separated
+!! by commas. Blank lines and lines that start with # are skipped.
 module talus_table_csv
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use, intrinsic :: ieee_exceptions, only: ieee_overflow, ieee_get_halting_mode, &
-    ieee_set_halting_mode, ieee_set_flag
   use talus_kinds, only: dp
-  use talus_status, only: status_t, status_set, status_deck, status_io, status_failed
-  use talus_text, only: text_of
+  use talus_status, only: status_t, status_set, status_deck
+  use talus_text, only: text_of, text_lower, text_to_real
+  use talus_read_file, only: file_read
   implicit none
   private
-  public :: table_csv_read
+  public :: table_csv_t, table_csv_read, table_csv_fault, table_csv_faults, table_csv_status
 
-  integer, parameter :: line_length = 1000
+  !> Largest file [bytes].
+  integer, parameter :: bytes_max = 100000000
+  !> Faults kept of one table; the others are counted.
+  integer, parameter :: faults_kept = 20
+
+  type :: fault_t
+    character(:), allocatable :: text
+  end type fault_t
+
+  type :: table_csv_t
+    character(:), allocatable :: place      !! what goes before a line's number: 'file.csv:'
+    real(dp), allocatable :: values(:, :)   !! (columns, rows), of rows without fault
+    integer, allocatable :: lines(:)        !! (rows) line number of each row
+    integer :: faults = 0                   !! number of faults
+    type(fault_t), allocatable :: fault(:)  !! the first ones, and how many more there are
+  end type table_csv_t
 
 contains
 
-  !> Read all rows; every message names the file, the line, the value and what is allowed.
-  subroutine table_csv_read(path, header, values, lines, status)
-    character(*), intent(in) :: path                   !! file name
-    character(*), intent(in) :: header                 !! required names, comma-separated
-    real(dp), allocatable, intent(out) :: values(:, :) !! (columns, rows)
-    integer, allocatable, intent(out) :: lines(:)      !! (rows) line number of each row
-    type(status_t), intent(inout) :: status
-    character(line_length) :: text
-    real(dp), allocatable :: grown(:, :)
-    integer :: unit, iostat, line, rows, columns, i
+  !> Read all rows. The table holds those that are right, and a fault for each that is not; every
+  !> fault names the file, the line, the value and what is allowed.
+  subroutine table_csv_read(path, header, table)
+    character(*), intent(in) :: path       !! file name
+    character(*), intent(in) :: header     !! required names, comma-separated
+    type(table_csv_t), intent(out) :: table
+    character(:), allocatable :: text, problem, content
+    integer :: first, last, line, columns, rows, i
     logical :: header_seen
 
+    table%place = trim(path)//':'
     columns = 1 + count([(header(i:i) == ',', i=1, len(header))])
-    allocate (values(columns, 64), lines(64))
-    open (newunit=unit, file=path, status='old', action='read', iostat=iostat)
-    if (iostat /= 0) then
-      call status_set(status, status_io, trim(path)//': cannot be opened for reading; '// &
-        'expected a CSV file with the columns '//header)
-      return
-    end if
+    allocate (table%values(columns, 64), table%lines(64))
     rows = 0
-    line = 0
+    call file_read(path, 'the deck''s folder', 'a CSV file with the columns '//header, bytes_max, &
+      text, problem)
+    if (len(problem) > 0) call table_csv_fault(table, 0, problem)
     header_seen = .false.
-    do
-      read (unit, '(a)', iostat=iostat) text
-      if (iostat /= 0) exit
+    line = 0
+    first = 1
+    do while (first <= len(text) .and. len(problem) == 0)
+      last = first + index(text(first:), new_line('a')) - 2
+      if (last < first - 1) last = len(text)
       line = line + 1
-      do i = 1, len_trim(text)
-        if (text(i:i) == achar(9) .or. text(i:i) == achar(13)) text(i:i) = ' '
-      end do
-      text = adjustl(text)
-      if (len_trim(text) == 0 .or. text(1:1) == '#') cycle
-      if (.not. header_seen) then
-        call check_header(path, line, text, header, status)
-        header_seen = .true.
-      else
-        rows = rows + 1
-        if (rows > size(lines)) then
-          allocate (grown(columns, 2*size(lines)))
-          grown(:, :rows-1) = values
-          call move_alloc(grown, values)
-          lines = [lines, lines]
-        end if
-        lines(rows) = line
-        call read_row(path, line, text, header, values(:, rows), status)
+      content = clean(text(first:last))
+      first = last + 2
+      if (len(content) == 0 .or. index(content, '#') == 1) cycle
+      if (header_seen) then
+        call read_row(line, content, header, rows, table)
+      else if (unquoted(content) /= text_lower(header)) then
+        call table_csv_fault(table, line, 'header '''//content// &
+          ''' is not allowed; allowed: '//header)
+        exit
       end if
-      if (status_failed(status)) exit
+      header_seen = .true.
     end do
-    close (unit)
-    if (rows == 0) call status_set(status, status_deck, trim(path)//': no rows; expected '// &
-      'the header '//header//' and at least one row of numbers')
-    values = values(:, :rows)
-    lines = lines(:rows)
+    if (rows == 0 .and. table%faults == 0) call table_csv_fault(table, 0, &
+      'no rows; allowed: the header '//header//' and at least one row of numbers')
+    table%values = table%values(:, :rows)
+    table%lines = table%lines(:rows)
   end subroutine table_csv_read
 
-  subroutine check_header(path, line, text, header, status)
-    character(*), intent(in) :: path, text, header
-    integer, intent(in) :: line
-    type(status_t), intent(inout) :: status
-    character(line_length) :: squeezed
-    integer :: i, n
+  !> A line without tabs and without blanks at its ends.
+  pure function clean(text) result(content)
+    character(*), intent(in) :: text
+    character(:), allocatable :: content
+    integer :: i
 
-    squeezed = ''
-    n = 0
-    do i = 1, len_trim(text)
-      if (text(i:i) == ' ') cycle
-      n = n + 1
-      squeezed(n:n) = text(i:i)
+    content = text
+    do i = 1, len(content)
+      if (content(i:i) == achar(9)) content(i:i) = ' '
     end do
-    if (squeezed(:n) == header) return
-    call status_set(status, status_deck, trim(path)//':'//text_of(line)//': header '''// &
-      trim(text)//''' is not allowed; expected '//header)
-  end subroutine check_header
+    content = trim(adjustl(content))
+  end function clean
 
-  !> Numbers of one row.
-  subroutine read_row(path, line, text, header, row, status)
-    character(*), intent(in) :: path, text, header
+  !> A header in small letters, without blanks and the quotes that spreadsheets write.
+  pure function unquoted(text) result(names)
+    character(*), intent(in) :: text
+    character(:), allocatable :: names
+    integer :: i
+
+    names = ''
+    do i = 1, len(text)
+      if (text(i:i) /= ' ' .and. text(i:i) /= '"') names = names//text_lower(text(i:i))
+    end do
+  end function unquoted
+
+  !> Add the numbers of one row to the table, or its first fault.
+  subroutine read_row(line, text, header, rows, table)
     integer, intent(in) :: line
-    real(dp), intent(out) :: row(:)
-    type(status_t), intent(inout) :: status
-    character(line_length) :: field
-    integer :: column, first, last, iostat
+    character(*), intent(in) :: text, header
+    integer, intent(inout) :: rows
+    type(table_csv_t), intent(inout) :: table
+    real(dp) :: row(size(table%values, 1))
+    character(:), allocatable :: field
+    integer :: column, first, last
+    logical :: is_right
 
-    row = 0.0_dp
     first = 1
-    last = 0
     do column = 1, size(row)
-      last = index(text(first:), ',')
-      if (last == 0 .or. first > len_trim(text)) last = len_trim(text(first:)) + 1
-      last = first + last - 2
-      field = adjustl(text(first:last))
-      iostat = 1
-      if (verify(trim(field), '0123456789+-.eEdD') == 0) &
-        call read_number(field, row(column), iostat)
-      if (iostat /= 0) then
-        call status_set(status, status_deck, trim(path)//':'//text_of(line)//': value '''// &
-          trim(field)//''' in column '//text_of(column)//' is not a finite number; expected '// &
-          text_of(size(row))//' numbers: '//header)
+      last = first + index(text(first:)//',', ',') - 2
+      field = clean(text(first:last))
+      call text_to_real(field, row(column), is_right)
+      if (.not. is_right) then
+        call table_csv_fault(table, line, 'value '''//field//''' in column '// &
+          text_of(column)//' is not a finite number; allowed: '//text_of(size(row))// &
+          ' numbers: '//header)
         return
       end if
-      first = min(last + 2, len(text))
+      first = min(last + 2, len(text) + 1)
     end do
-    if (last < len_trim(text)) call status_set(status, status_deck, trim(path)//':'// &
-      text_of(line)//': '''//trim(text)//''' has more than '//text_of(size(row))// &
-      ' columns; expected '//header)
+    if (last < len(text)) then
+      call table_csv_fault(table, line, ''''//text//''' has more than '// &
+        text_of(size(row))//' columns; allowed: '//header)
+      return
+    end if
+    rows = rows + 1
+    if (rows > size(table%lines)) call grow(table)
+    table%values(:, rows) = row
+    table%lines(rows) = line
   end subroutine read_row
 
-  !> A finite number, or iostat /= 0. A number too large must not halt a debugging build.
-  subroutine read_number(field, value, iostat)
-    character(*), intent(in) :: field
-    real(dp), intent(out) :: value
-    integer, intent(out) :: iostat
-    logical :: halting
+  !> Twice the room for rows.
+  subroutine grow(table)
+    type(table_csv_t), intent(inout) :: table
+    real(dp), allocatable :: values(:, :)
 
-    value = 0.0_dp
-    iostat = 1
-    if (len_trim(field) == 0) return
-    call ieee_get_halting_mode(ieee_overflow, halting)
-    call ieee_set_halting_mode(ieee_overflow, .false.)
-    read (field, *, iostat=iostat) value
-    call ieee_set_flag(ieee_overflow, .false.)
-    call ieee_set_halting_mode(ieee_overflow, halting)
-    if (iostat == 0 .and. .not. ieee_is_finite(value)) iostat = 1
-  end subroutine read_number
+    associate (rows => size(table%lines))
+      allocate (values(size(table%values, 1), 2*rows))
+      values(:, :rows) = table%values
+    end associate
+    call move_alloc(values, table%values)
+    table%lines = [table%lines, table%lines]
+  end subroutine grow
+
+  !> Add a fault of one line.
+  pure subroutine table_csv_fault(table, line, problem)
+    type(table_csv_t), intent(inout) :: table
+    integer, intent(in) :: line            !! 0 for the file as a whole
+    character(*), intent(in) :: problem    !! what is wrong; allowed: what is right
+    character(:), allocatable :: text
+    integer :: i
+
+    if (.not. allocated(table%fault)) allocate (table%fault(faults_kept + 1))
+    table%faults = table%faults + 1
+    text = table%place
+    if (line > 0) text = text//text_of(line)//':'
+    text = text//' '//problem
+    if (table%faults > faults_kept) &
+      text = table%place//' and '//text_of(table%faults - faults_kept)//' more errors'
+    ! An expression as the index here is compiled wrong by GCC 12.
+    i = table_csv_faults(table)
+    table%fault(i)%text = text
+  end subroutine table_csv_fault
+
+  !> Number of texts in table%fault.
+  pure integer function table_csv_faults(table) result(n)
+    type(table_csv_t), intent(in) :: table
+
+    n = min(table%faults, faults_kept + 1)
+  end function table_csv_faults
+
+  !> Fail with all faults, one a line; nothing happens when there are none.
+  pure subroutine table_csv_status(table, status)
+    type(table_csv_t), intent(in) :: table
+    type(status_t), intent(inout) :: status
+    character(:), allocatable :: text
+    integer :: i
+
+    if (table%faults == 0) return
+    text = ''
+    do i = 1, table_csv_faults(table)
+      text = text//new_line('a')//table%fault(i)%text
+    end do
+    call status_set(status, status_deck, text(2:))
+  end subroutine table_csv_status
 end module talus_table_csv

@@ -5,7 +5,10 @@ module talus_text
   use talus_kinds, only: dp, i8
   implicit none
   private
-  public :: text_of, text_lower, text_is_one_of, text_as_word
+  public :: text_of, text_lower, text_is_one_of, text_as_word, text_to_real, text_unsigned
+
+  !> Largest power of ten read: larger ones would overflow, which traps in a debug build.
+  integer, parameter :: power_max = 300
 
   !> Shortest readable text of a number: text_of(0.4_dp) is '0.4'.
   interface text_of
@@ -127,4 +130,40 @@ contains
       if (index(allowed, text(i:i)) == 0) word(i:i) = '_'
     end do
   end function text_as_word
+
+  !> A real number in Fortran's or C's notation; infinities, NaN and anything else are refused.
+  pure subroutine text_to_real(text, value, is_right)
+    character(*), intent(in) :: text
+    real(dp), intent(out) :: value      !! 0 when it is not right
+    logical, intent(out) :: is_right
+    character(:), allocatable :: mantissa, exponent
+    integer :: split, power, iostat
+
+    value = 0.0_dp
+    is_right = .false.
+    mantissa = text_unsigned(text_lower(text))
+    exponent = '0'
+    split = scan(mantissa, 'ed')
+    if (split > 0) then
+      exponent = text_unsigned(mantissa(split+1:))
+      mantissa = mantissa(:split-1)
+    end if
+    if (verify(mantissa, '0123456789.') > 0 .or. scan(mantissa, '0123456789') == 0) return
+    if (index(mantissa, '.') /= index(mantissa, '.', back=.true.)) return
+    if (len(exponent) == 0 .or. len(exponent) > 3 .or. verify(exponent, '0123456789') > 0) return
+    read (exponent, *, iostat=iostat) power
+    if (iostat /= 0 .or. power + len(mantissa) > power_max) return
+    read (text, *, iostat=iostat) value
+    is_right = iostat == 0
+  end subroutine text_to_real
+
+  !> Text without a leading sign.
+  pure function text_unsigned(text) result(rest)
+    character(*), intent(in) :: text
+    character(:), allocatable :: rest
+
+    rest = text
+    if (len(text) == 0) return
+    if (text(1:1) == '+' .or. text(1:1) == '-') rest = text(2:)
+  end function text_unsigned
 end module talus_text

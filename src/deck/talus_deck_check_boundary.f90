@@ -2,11 +2,14 @@
 !> Contradictions in &boundary.
 module talus_deck_check_boundary
   use talus_kinds, only: dp
+  use talus_text, only: text_of
+  use talus_table_csv, only: table_csv_t
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_acts_in
+  use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_exceeds, &
+    deck_acts_in
   use talus_deck_store, only: store_t, store_sections, store_value
   use talus_deck_check_soil, only: check_region
-  use talus_deck_check_water, only: check_file
+  use talus_deck_check_file, only: check_hydrograph
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
   private
@@ -147,15 +150,17 @@ contains
     end do
     if (.not. is_solved) call warn(store, section, 'water', 'no stage in which it acts solves '// &
                                    'seepage', messages)
-    if (boundary%water == 'rain') call check_rain(store, section, boundary, messages)
+    if (boundary%water == 'rain') call check_rain(store, section, boundary, deck, messages)
   end subroutine check_water
 
   !> Rain falls on the surface and has one source.
-  subroutine check_rain(store, section, boundary, messages)
+  subroutine check_rain(store, section, boundary, deck, messages)
     type(store_t), intent(in) :: store
     integer, intent(in) :: section
     type(boundary_t), intent(in) :: boundary
+    type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
+    type(table_csv_t) :: table
 
     if (boundary%where == 'bottom' .or. boundary%where == 'left' .or. boundary%where == 'right') &
         then
@@ -171,7 +176,10 @@ contains
                       'rain or hydrograph with it')
       end if
     end if
-    call check_file(store, section, 'hydrograph', boundary%hydrograph, messages)
+    if (len(boundary%hydrograph) == 0) return
+    call check_hydrograph(store, section, boundary%hydrograph, messages, table)
+    if (size(table%values, 2) > 0) call check_start(store, section, boundary, table%values(1, 1), &
+                                                    deck, messages)
 
   contains
 
@@ -181,6 +189,27 @@ contains
       is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
     end function is_wrong
   end subroutine check_rain
+
+  !> Rain that begins only when its stage is over.
+  subroutine check_start(store, section, boundary, start, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    real(dp), intent(in) :: start              !! first time of the hydrograph [s]
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: i
+
+    do i = 1, size(deck%stage)
+      associate (stage => deck%stage(i))
+        if (stage%solve == 'soil' .or. .not. deck_acts_in(boundary, stage%name)) cycle
+        if (.not. deck_exceeds(start, stage%duration*(1.0_dp - 1.0e-12_dp))) cycle
+        call warn(store, section, 'hydrograph', 'no rain in stage '''//stage%name// &
+          ''', which is over after '//text_of(stage%duration)//' s: the first row is at '// &
+          text_of(start)//' s', messages)
+      end associate
+    end do
+  end subroutine check_start
 
   !> A group that holds, loads and wets nothing.
   subroutine check_effect(store, section, boundary, messages)

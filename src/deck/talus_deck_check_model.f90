@@ -7,7 +7,7 @@ module talus_deck_check_model
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_moves_soil
   use talus_deck_store, only: store_t, store_first, store_value
   use talus_deck_extent, only: extent_t, extent_of, extent_holds
-  use talus_deck_check_water, only: check_file
+  use talus_deck_check_file, only: check_file
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
   private

@@ -8,12 +8,12 @@ module talus_deck_check_water
     deck_moves_soil
   use talus_deck_store, only: store_t, store_sections, store_first
   use talus_deck_extent, only: extent_t, extent_of
-  use talus_deck_file, only: file_problem
+  use talus_deck_check_file, only: check_file, check_retention
   use talus_deck_check_soil, only: soil_list
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
   private
-  public :: check_waters, check_initial, check_file
+  public :: check_waters, check_initial
 
 contains
 
@@ -49,7 +49,7 @@ contains
         if (deck_exceeds(water%conductivity_x, 0.1_dp)) then
           call warn(store, at(i), 'conductivity_x', 'very large; the unit is m/s', messages)
         end if
-        if (water%retention == 'table') call check_file(store, at(i), 'file', water%file, messages)
+        if (water%retention == 'table') call check_retention(store, at(i), water%file, messages)
       end associate
     end do
     call store_sections(store, 'soil', at)
@@ -60,22 +60,6 @@ contains
                     'a &water for it, or one &water with a blank soil')
     end do
   end subroutine check_waters
-
-  !> A file the deck names must open and hold something. Its content is read later.
-  subroutine check_file(store, section, name, path, messages)
-    type(store_t), intent(in) :: store
-    integer, intent(in) :: section
-    character(*), intent(in) :: name, path     !! key; path that opens from the working folder
-    type(messages_t), intent(inout) :: messages
-    character(:), allocatable :: problem
-    integer :: split
-
-    if (len(path) == 0) return
-    problem = file_problem(path)
-    if (len(problem) == 0) return
-    split = index(problem, '; allowed: ')
-    call complain(store, section, name, problem(:split-1), messages, problem(split+11:))
-  end subroutine check_file
 
   !> &initial against &water, the stages and the body.
   subroutine check_initial(store, deck, messages)

@@ -2,17 +2,14 @@
 !> From the words of a deck to values of the key's kind, with the kind, range and choices checked.
 module talus_deck_convert
   use talus_kinds, only: dp
-  use talus_text, only: text_lower, text_is_one_of, text_of
-  use talus_deck_table, only: key_t, key_in_range, key_has_range
+  use talus_text, only: text_lower, text_is_one_of, text_of, text_to_real, text_unsigned
+  use talus_deck_table, only: key_t, key_in_range, key_has_range, key_is_required
   use talus_deck_types, only: name_length
   use talus_deck_store, only: value_t
   use talus_deck_scan, only: word_t
   implicit none
   private
-  public :: convert_words, convert_default, real_of_word
-
-  !> Largest power of ten read: larger ones would overflow, which traps in a debug build.
-  integer, parameter :: power_max = 300
+  public :: convert_words, convert_default
 
 contains
 
@@ -24,6 +21,7 @@ contains
     character(:), allocatable, intent(out) :: problem
 
     problem = ''
+    value%is_wrong = .true.
     if (size(words) /= 1 .and. index(key%kind, '_list') == 0) then
       problem = 'one value expected, '//text_of(size(words))//' found'
       return
@@ -66,7 +64,8 @@ contains
     integer :: i
 
     do i = 1, size(words)
-      call real_of_word(words(i), found(i), is_right)
+      call text_to_real(words(i)%text, found(i), is_right)
+      is_right = is_right .and. .not. words(i)%is_quoted
       if (.not. is_right) then
         problem = 'a real number expected'
         if (words(i)%is_quoted) problem = 'a real number expected, text found'
@@ -83,43 +82,6 @@ contains
     values = found
   end subroutine convert_reals
 
-  !> A real number in Fortran's or C's notation; infinities and NaN are refused.
-  subroutine real_of_word(word, value, is_right)
-    type(word_t), intent(in) :: word
-    real(dp), intent(out) :: value
-    logical, intent(out) :: is_right
-    character(:), allocatable :: mantissa, exponent
-    integer :: split, power, iostat
-
-    value = 0.0_dp
-    is_right = .false.
-    if (word%is_quoted) return
-    mantissa = unsigned(text_lower(word%text))
-    exponent = '0'
-    split = scan(mantissa, 'ed')
-    if (split > 0) then
-      exponent = unsigned(mantissa(split+1:))
-      mantissa = mantissa(:split-1)
-    end if
-    if (verify(mantissa, '0123456789.') > 0 .or. scan(mantissa, '0123456789') == 0) return
-    if (index(mantissa, '.') /= index(mantissa, '.', back=.true.)) return
-    if (len(exponent) == 0 .or. len(exponent) > 3 .or. verify(exponent, '0123456789') > 0) return
-    read (exponent, *, iostat=iostat) power
-    if (iostat /= 0 .or. power + len(mantissa) > power_max) return
-    read (word%text, *, iostat=iostat) value
-    is_right = iostat == 0
-  end subroutine real_of_word
-
-  !> Text without a leading sign.
-  pure function unsigned(text) result(rest)
-    character(*), intent(in) :: text
-    character(:), allocatable :: rest
-
-    rest = text
-    if (len(text) == 0) return
-    if (text(1:1) == '+' .or. text(1:1) == '-') rest = text(2:)
-  end function unsigned
-
   subroutine convert_integer(key, word, value, problem)
     type(key_t), intent(in) :: key
     type(word_t), intent(in) :: word
@@ -128,7 +90,7 @@ contains
     character(:), allocatable :: digits
     integer :: found, iostat
 
-    digits = unsigned(word%text)
+    digits = text_unsigned(word%text)
     if (word%is_quoted .or. len(digits) == 0 .or. verify(digits, '0123456789') > 0) then
       problem = 'an integer expected'
       return
@@ -170,6 +132,8 @@ contains
 
     if (.not. word%is_quoted) then
       problem = 'text needs quotes'
+    else if (key_is_required(key) .and. len_trim(word%text) == 0) then
+      problem = 'a value is missing'
     else if (len(key%allowed) > 0) then
       if (text_is_one_of(text_lower(word%text), key%allowed) .and. len_trim(word%text) > 0 &
           .and. index(word%text, '|') == 0) then

@@ -4,7 +4,7 @@ module talus_deck_fill
   use talus_kinds, only: dp
   use talus_deck_types, only: deck_t, run_t, geometry_t, nodes_t, smoothing_t, soil_t, damage_t, &
     water_t, initial_t, boundary_t, stage_t, output_t, deck_given
-  use talus_deck_store, only: store_t, store_sections, store_first, get => store_get
+  use talus_deck_store, only: store_t, store_sections, store_first, store_line, get => store_get
   use talus_deck_path, only: path_from_deck
   implicit none
   private
@@ -81,6 +81,7 @@ contains
     call get(store, s, 'origin_x', geometry%origin_x)
     call get(store, s, 'origin_y', geometry%origin_y)
     call get_path(store, s, folder, 'file', geometry%file)
+    geometry%file_line = store_line(store, s, 'file')
   end subroutine fill_geometry
 
   subroutine fill_nodes(store, s, nodes)
@@ -218,6 +219,7 @@ contains
 
     call get(store, s, 'name', boundary%name)
     call get(store, s, 'where', boundary%where)
+    boundary%where_line = store_line(store, s, 'where')
     call fill_bounds(store, s, boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y)
     call get(store, s, 'stages', boundary%stages)
     call get(store, s, 'displacement', boundary%displacement)
@@ -244,6 +246,7 @@ contains
     type(stage_t), intent(out) :: stage
 
     call get(store, s, 'name', stage%name)
+    stage%name_line = store_line(store, s, 'name')
     call get(store, s, 'kind', stage%kind)
     call get(store, s, 'solve', stage%solve)
     call get(store, s, 'duration', stage%duration)

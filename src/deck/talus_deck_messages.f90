@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Errors and warnings about a deck, collected so that all are reported at once.
 module talus_deck_messages
+  use talus_status, only: status_t, status_set, status_deck
   use talus_text, only: text_of
   implicit none
   private
   public :: message_t, messages_t, messages_start, messages_error, messages_warning
   public :: messages_errors, messages_warnings, messages_line, messages_text, messages_sort
+  public :: messages_lines, messages_status
 
   type :: message_t
     logical :: is_error = .true.
@@ -38,6 +40,34 @@ contains
 
     call append(messages, .true., line, text)
   end subroutine messages_error
+
+  !> Add an error for each line of a text.
+  subroutine messages_lines(messages, line, subject, text)
+    type(messages_t), intent(inout) :: messages
+    integer, intent(in) :: line        !! line in the file, 0 for none
+    character(*), intent(in) :: subject, text !! what goes before each line; the lines
+    integer :: first, last
+
+    first = 1
+    do while (first <= len(text))
+      last = first + index(text(first:), new_line('a')) - 2
+      if (last < first) last = len(text)
+      call append(messages, .true., line, subject//': '//text(first:last))
+      first = last + 2
+    end do
+  end subroutine messages_lines
+
+  !> Fail with all messages below a title; nothing happens when none is an error.
+  subroutine messages_status(messages, title, status)
+    type(messages_t), intent(in) :: messages
+    character(*), intent(in) :: title
+    type(status_t), intent(inout) :: status
+    character(:), allocatable :: text
+
+    if (messages_errors(messages) == 0) return
+    text = messages_text(messages)
+    call status_set(status, status_deck, title//new_line('a')//text(:len(text)-1))
+  end subroutine messages_status
 
   !> Add a warning: the deck can be used, but something looks unintended.
   subroutine messages_warning(messages, line, text)

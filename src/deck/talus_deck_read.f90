@@ -2,13 +2,14 @@
 !> Reads a deck's text into the store by the key table, reporting every error it meets, and applies
 !! the table's defaults.
 module talus_deck_read
-  use talus_text, only: text_of
+  use talus_text, only: text_of, text_lower
   use talus_deck_messages, only: messages_t, messages_error, messages_errors
   use talus_deck_table, only: table_group_index, table_key_index, key_is_required, copied_mark, &
     derived_mark
   use talus_deck_keys, only: deck_table
   use talus_deck_scan, only: entry_t, entries_of, entry_source
-  use talus_deck_store, only: store_t, store_add_section, store_first, store_value, store_is_used
+  use talus_deck_store, only: store_t, value_t, store_add_section, store_first, store_value, &
+    store_is_used
   use talus_deck_convert, only: convert_words, convert_default
   use talus_deck_suggest, only: suggest_group, suggest_key
   use talus_deck_report, only: report_error, report_warning
@@ -84,26 +85,28 @@ contains
     integer :: group, key, k
 
     group = store%section(section)%group
+    ! A key with an index was meant; only its value cannot be taken.
+    start = entry%name//'('
+    k = store_value(store, section, start(:index(start, '(')-1))
     key = table_key_index(store%table, group, entry%name)
     start = '&'//store%table%group(group)%name//' '//entry%name//' = '//entry_source(entry)//': '
     if (key == 0 .and. index(entry%name, '(') > 0) then
-      call messages_error(messages, entry%line, start// &
+      if (size(entry%value) > 0) call messages_error(messages, entry%line, start// &
           'no indices; allowed: key = value, value, ...')
+      if (k > 0) call mark_given(store%section(section)%value(k), entry)
+      if (k > 0) store%section(section)%value(k)%is_wrong = .true.
       return
     else if (key == 0) then
       call messages_error(messages, entry%line, start//'unknown key'// &
         suggest_key(store%table, group, entry%name)//'; allowed: '//key_list(store, group))
       return
     end if
-    k = key - store%table%group(group)%first + 1
     if (store%section(section)%value(k)%is_given) then
       call messages_error(messages, entry%line, start//'duplicate key, first in line '// &
         text_of(store%section(section)%value(k)%line)//'; allowed: once in a group')
       return
     end if
-    store%section(section)%value(k)%is_given = .true.
-    store%section(section)%value(k)%line = entry%line
-    store%section(section)%value(k)%source = entry_source(entry)
+    call mark_given(store%section(section)%value(k), entry)
     if (size(entry%value) == 0) then
       store%section(section)%value(k)%is_wrong = .true.
       return
@@ -111,6 +114,16 @@ contains
     call convert_words(store%table%key(key), entry%value, store%section(section)%value(k), problem)
     if (len(problem) > 0) call report_error(store, section, entry%name, problem, messages)
   end subroutine read_key
+
+  !> Note where a key stands in the deck, and what it was given.
+  subroutine mark_given(value, entry)
+    type(value_t), intent(inout) :: value
+    type(entry_t), intent(in) :: entry
+
+    value%is_given = .true.
+    value%line = entry%line
+    value%source = entry_source(entry)
+  end subroutine mark_given
 
   !> Report required groups that are absent; give the others an empty section for their defaults.
   subroutine add_absent_groups(store, messages)
@@ -122,13 +135,24 @@ contains
       if (any(store%section(:store%count)%group == group)) cycle
       if (store%table%group(group)%required) then
         call messages_error(messages, 0, '&'//store%table%group(group)%name// &
-                            ': missing group; allowed: '//store%table%group(group)%text)
+          ': missing group; allowed: one'// &
+          trim(merge(' or more', '        ', store%table%group(group)%repeatable))// &
+          ', for '//purpose(store%table%group(group)%text))
       end if
       if (.not. store%table%group(group)%repeatable) then
         call store_add_section(store, group, 0, added)
       end if
     end do
   end subroutine add_absent_groups
+
+  !> What a group is for, to go on in a sentence: the table's text without capital and full stop.
+  pure function purpose(text)
+    character(*), intent(in) :: text
+    character(:), allocatable :: purpose
+
+    purpose = text_lower(text(:1))//text(2:)
+    if (index(text, '.', back=.true.) == len(text)) purpose = purpose(:len(text)-1)
+  end function purpose
 
   !> Table defaults of the keys that are not in the deck; derived ones come later.
   subroutine apply_defaults(store, section)

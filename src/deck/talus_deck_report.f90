@@ -5,7 +5,7 @@ module talus_deck_report
   use talus_text, only: text_of
   use talus_deck_messages, only: messages_t, messages_error, messages_warning
   use talus_deck_table, only: key_allowed
-  use talus_deck_store, only: store_t, store_value
+  use talus_deck_store, only: store_t, store_value, store_line
   implicit none
   private
   public :: report_error, report_warning, report_sentence, value_text, number_text, text_padded
@@ -21,7 +21,7 @@ contains
     type(messages_t), intent(inout) :: messages
     character(*), intent(in), optional :: allowed !! default: what the table allows
 
-    call messages_error(messages, line_of(store, section, name), &
+    call messages_error(messages, store_line(store, section, name), &
                         report_sentence(store, section, name, problem, allowed))
   end subroutine report_error
 
@@ -33,7 +33,7 @@ contains
     character(*), intent(in) :: problem         !! what looks unintended
     type(messages_t), intent(inout) :: messages
 
-    call messages_warning(messages, line_of(store, section, name), &
+    call messages_warning(messages, store_line(store, section, name), &
                           report_sentence(store, section, name, problem, ''))
   end subroutine report_warning
 
@@ -62,16 +62,6 @@ contains
       text = text//'; allowed: '//allowed
     end if
   end function report_sentence
-
-  !> Line of a key, or of its group when the key is not in the deck.
-  pure integer function line_of(store, section, name)
-    type(store_t), intent(in) :: store
-    integer, intent(in) :: section
-    character(*), intent(in) :: name
-
-    line_of = store%section(section)%value(store_value(store, section, name))%line
-    if (line_of == 0) line_of = store%section(section)%line
-  end function line_of
 
   !> A value as it is written in a deck.
   function value_text(store, section, k) result(text)

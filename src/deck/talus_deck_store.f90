@@ -10,7 +10,7 @@ module talus_deck_store
   implicit none
   private
   public :: value_t, section_t, store_t, store_add_section, store_sections, store_first, store_get
-  public :: store_value, store_is_used, real_absent
+  public :: store_value, store_line, store_is_used, real_absent
 
   !> Value of an integer key that is absent.
   integer, parameter, public :: integer_absent = -huge(1)
@@ -123,6 +123,16 @@ contains
       if (k > 0) k = k - store%table%group(group)%first + 1
     end associate
   end function store_value
+
+  !> Line of a key, or of its group when the key is not in the deck.
+  pure integer function store_line(store, section, name) result(line)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section   !! index in store%section
+    character(*), intent(in) :: name !! key
+
+    line = store%section(section)%value(store_value(store, section, name))%line
+    if (line == 0) line = store%section(section)%line
+  end function store_line
 
   !> True when a key takes part: it has no condition, or its condition 'key=a|b' holds.
   pure recursive logical function store_is_used(store, section, k) result(used)

@@ -26,6 +26,7 @@ module talus_deck_types
     real(dp) :: slope_height, slope_ratio, base_depth, toe_distance, crest_width
     real(dp) :: origin_x, origin_y
     character(:), allocatable :: file          !! path that opens from the working folder
+    integer :: file_line                       !! where the deck names it
   end type geometry_t
 
   type :: nodes_t
@@ -88,6 +89,7 @@ module talus_deck_types
 
   type :: boundary_t
     character(:), allocatable :: name, where
+    integer :: where_line                      !! line of the deck
     real(dp) :: from_x, to_x, from_y, to_y     !! absent bounds are -huge and huge
     character(name_length), allocatable :: stages(:)
     character(:), allocatable :: displacement
@@ -103,6 +105,7 @@ module talus_deck_types
 
   type :: stage_t
     character(:), allocatable :: name, kind, solve
+    integer :: name_line                       !! line of the deck
     real(dp) :: duration, storm_step, storm_step_minimum
     real(dp) :: factor_first, factor_tolerance, tolerance
     integer :: steps_max

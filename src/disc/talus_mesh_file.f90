@@ -12,8 +12,9 @@
 !> together, each with the line that it is on and what is allowed.
 module talus_mesh_file
   use talus_kinds, only: dp
-  use talus_status, only: status_t, status_set, status_failed, status_io, status_deck
-  use talus_text, only: text_of, text_lower
+  use talus_status, only: status_t, status_set, status_failed, status_deck
+  use talus_text, only: text_of, text_lower, text_to_real
+  use talus_read_file, only: text_without_mark
   use talus_nodes, only: mesh_t, mesh_edges, mesh_find_boundary, mesh_tag_sides, &
     mesh_corner_jacobian
   use talus_mesh_check, only: mesh_check_boundary
@@ -29,7 +30,7 @@ module talus_mesh_file
   type :: reader_t
     character(:), allocatable :: path, errors
     integer :: unit = 0, line = 0, n_error = 0
-    logical :: at_end = .false.
+    logical :: at_end = .false., too_long = .false.
     character(line_length) :: text = ''          !! the line as it stands in the file
     character(word_length) :: word(n_words) = '' !! its words without the comment
     integer :: n_word = 0
@@ -51,7 +52,7 @@ contains
     reader%errors = ''
     open (newunit=reader%unit, file=path, status='old', action='read', iostat=error)
     if (error /= 0) then
-      call status_set(status, status_io, path//': cannot be opened for reading')
+      call status_set(status, status_deck, path//': cannot be opened for reading')
       return
     end if
     call read_nodes(reader, mesh)
@@ -91,8 +92,8 @@ contains
         if (reader%word(1) == 'elements') return
         cycle
       end if
-      call word_real(reader%word(1), mesh%x(1, i), ok)
-      if (ok) call word_real(reader%word(2), mesh%x(2, i), ok)
+      call text_to_real(trim(reader%word(1)), mesh%x(1, i), ok)
+      if (ok) call text_to_real(trim(reader%word(2)), mesh%x(2, i), ok)
       if (.not. ok) call report(reader, 'x and y must be numbers [m] like 1.5 or 2e-3')
       if (.not. allocated(mesh%soil)) cycle
       call word_integer(reader%word(3), mesh%soil(i), ok)
@@ -224,20 +225,24 @@ contains
     integer :: error
 
     do
-      read (reader%unit, '(a)', iostat=error) reader%text
-      reader%at_end = error /= 0
+      read (reader%unit, '(a)', advance='no', iostat=error) reader%text
+      reader%too_long = error == 0
+      if (reader%too_long) read (reader%unit, '()', iostat=error)
+      reader%at_end = error /= 0 .and. .not. is_iostat_eor(error)
       if (reader%at_end) then
         reader%text = '(end of file)'
         reader%n_word = 0
         return
       end if
       reader%line = reader%line + 1
+      if (reader%line == 1) reader%text = text_without_mark(reader%text)
       call split_words(reader)
       if (reader%n_word > 0) return
     end do
   end subroutine next_line
 
-  !> Words of the line before any comment; more than n_words of them count as n_words + 1.
+  !> Words of the line before any comment; more than n_words of them, a word or a line that is too
+  !> long count as n_words + 1.
   subroutine split_words(reader)
     type(reader_t), intent(inout) :: reader
     logical :: blank, in_word
@@ -248,7 +253,7 @@ contains
     in_word = .false.
     length = 0
     do i = 1, line_length
-      if (reader%text(i:i) == '#') exit
+      if (reader%text(i:i) == '#') return
       blank = index(' '//achar(9)//achar(13), reader%text(i:i)) > 0
       if (.not. blank .and. .not. in_word) then
         if (reader%n_word > n_words) exit
@@ -257,28 +262,12 @@ contains
       end if
       in_word = .not. blank
       length = length + 1
-      if (blank .or. length > word_length .or. reader%n_word > n_words) cycle
+      if (.not. blank .and. length > word_length) reader%n_word = n_words + 1
+      if (blank .or. reader%n_word > n_words) cycle
       reader%word(reader%n_word)(length:length) = reader%text(i:i)
     end do
+    if (reader%too_long) reader%n_word = n_words + 1
   end subroutine split_words
-
-  !> Numbers with an exponent of two digits at most, so that none overflows.
-  pure subroutine word_real(word, value, ok)
-    character(*), intent(in) :: word
-    real(dp), intent(out) :: value
-    logical, intent(out) :: ok
-    integer :: error, split
-
-    value = 0.0_dp
-    split = scan(word//'e', 'eEdD')
-    ok = verify(trim(word), '0123456789+-.eEdD') == 0 .and. split > 1
-    if (ok) ok = scan(word(2:split-1), '+-') == 0
-    if (ok .and. split <= len_trim(word)) &
-      ok = len_trim(word) - scan(word, 'eEdD+-', back=.true.) <= 2
-    if (.not. ok) return
-    read (word, *, iostat=error) value
-    ok = error == 0
-  end subroutine word_real
 
   pure subroutine word_integer(word, value, ok)
     character(*), intent(in) :: word

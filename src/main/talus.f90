@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 files, 2 bad input, 3 numerics.
+!> The program `talus`: see `talus help`. Exit codes: 0 done, 1 no results, 2 bad input, 3 numerics.
 program talus
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
@@ -8,7 +8,8 @@ program talus
   use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t
   use talus_deck_messages, only: messages_t, messages_text
-  use talus_deck, only: deck_load
+  use talus_deck, only: deck_load, deck_verdict
+  use talus_setup_disc, only: setup_check_file
   use talus_deck_manual, only: manual_keys, manual_markdown
   use talus_check, only: check_deck
   use talus_run, only: run_deck
@@ -27,7 +28,7 @@ program talus
   type(command_t) :: command
   type(status_t) :: status
   type(deck_t) :: deck
-  character(:), allocatable :: text, base
+  character(:), allocatable :: text, base, warning
 
   call command_read(command, status)
   if (.not. status_failed(status)) then
@@ -37,9 +38,13 @@ program talus
       call load
       if (.not. status_failed(status)) &
         call place_results(deck, command%output, command%overwrite, base, status)
-      if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, status)
+      if (.not. status_failed(status)) call run_deck(deck, base, command%overwrite, &
+        warning, status)
       if (.not. status_failed(status)) &
         write (*, '(3a)') 'results: ', base, '.h5, _history.csv, _summary.txt'
+      if (allocated(warning)) then
+        if (len(warning) > 0) write (error_unit, '(2a)') 'talus: warning: ', warning
+      end if
     case ('check')
       call load
       if (.not. status_failed(status)) call check_deck(deck, command%spectrum, status)
@@ -69,6 +74,12 @@ contains
     integer :: threads
 
     call deck_load(command%argument, deck, messages, status)
+    if (status_failed(status)) then
+      ! A sound deck has its node file read once, when the model is made.
+      call setup_check_file(deck, messages)
+      status = status_t()
+      call deck_verdict(messages, status)
+    end if
     write (error_unit, '(a)', advance='no') messages_text(messages)
     if (status_failed(status)) return
     threads = deck%run%threads

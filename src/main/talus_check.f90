@@ -17,13 +17,16 @@ module talus_check
   use talus_coupling, only: coupling_needed
   use talus_timer, only: timer_now, timer_seconds
   use talus_cost, only: cost_t, cost_of
-  use talus_spectrum, only: spectrum_frequencies, spectrum_most_nodes
+  use talus_seepage_stable, only: seepage_step_stable
+  use talus_spectrum, only: spectrum_frequencies, spectrum_rates, spectrum_most_nodes
   implicit none
   private
   public :: check_deck
 
   !> Steps that are timed on a copy, to estimate the run time.
   integer, parameter :: trial_steps = 10
+  !> Sub-steps of the water after which the trial is cut short.
+  integer, parameter :: trial_seepage_steps = 200
   !> What looks at the step, audits and output add to the steps.
   real(dp), parameter :: overhead = 1.5_dp
 
@@ -167,7 +170,7 @@ contains
         write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
         estimate = overhead*steps*each
       end if
-      if (stage%solve /= 'soil') call print_seepage(session, number, estimate)
+      if (stage%solve /= 'soil') call print_seepage(session, number, spectrum, estimate)
       write (output_unit, '(2a)') '  estimated run time      ', text_of(estimate, 3)//' s'// &
         trim(merge(', if it is reached', '                  ', stage%only_after_failure))
       if (stage%only_after_failure) then
@@ -222,12 +225,13 @@ contains
   end function typical_steps
 
   !> Sub-steps of the water and their time, from a trial with the state at the start: one step of
-  !> the storm clock, or a hundredth of a dynamic stage.
-  subroutine print_seepage(session, number, estimate)
+  !> the storm clock, or a hundredth of a dynamic stage, or as much as some sub-steps reach.
+  subroutine print_seepage(session, number, spectrum, estimate)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
+    logical, intent(in) :: spectrum
     real(dp), intent(inout) :: estimate !! of the stage so far [s]
-    real(dp) :: began, limit, trial
+    real(dp) :: began, trial, reached
     integer(i8) :: before
 
     associate (seepage => session%seepage, disc => session%disc, ground => session%ground, &
@@ -236,15 +240,20 @@ contains
       if (stage%kind == 'storm') trial = stage%storm_step
       call seepage_shape(seepage, disc, ground, session%conditions%inlets, state)
       call face_fluxes(seepage, disc, ground, state)
-      limit = seepage_step_limit(seepage, disc, ground, state)
+      write (output_unit, '(2a)') '  explicit seepage step   ', &
+        text_of(seepage_step_limit(seepage, disc, ground, state), 6)//' s at the start, monotone'
+      write (output_unit, '(2a)') '  stable seepage step     ', &
+        text_of(seepage_step_stable(seepage, disc, ground, state), 6)//' s at the start'
+      if (spectrum) call print_rates(session)
       session%last_good = state
       before = state%seepage_steps
       began = timer_now()
-      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state)
-      estimate = estimate + (timer_now() - began)*stage%duration/trial
-      write (output_unit, '(2a)') '  explicit seepage step   ', text_of(limit, 4)//' s at the start'
+      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state, &
+                           trial_seepage_steps, reached)
+      estimate = estimate + (timer_now() - began)*stage%duration/reached
       write (output_unit, '(2a)') '  seepage steps, about    ', &
-        text_of(real(state%seepage_steps - before, dp)*stage%duration/trial, 3)
+        text_of(real(state%seepage_steps - before, dp)*stage%duration/reached, 3)// &
+        trim(merge(', by the first few', '                  ', reached < 0.999_dp*trial))
       state = session%last_good
     end associate
   end subroutine print_seepage
@@ -255,11 +264,7 @@ contains
     real(dp), allocatable :: square(:)
     integer :: i
 
-    if (session%disc%n > spectrum_most_nodes) then
-      write (output_unit, '(2a)') '  spectrum                only up to nodes: ', &
-        text_of(spectrum_most_nodes)
-      return
-    end if
+    if (too_large(session%disc%n)) return
     call spectrum_frequencies(session%disc, session%ground, session%state, session%motion, &
                               session%work, square)
     write (output_unit, '(2a)') '  2/omega_max by LAPACK   ', &
@@ -269,4 +274,24 @@ contains
       write (output_unit, '(4x,i6,es16.8)') i, square(i)
     end do
   end subroutine print_spectrum
+
+  !> The step at which the fastest change of pressure neither grows nor decays, from all of them.
+  subroutine print_rates(session)
+    type(session_t), intent(in) :: session
+    complex(dp), allocatable :: rate(:)
+
+    if (too_large(session%disc%n)) return
+    call spectrum_rates(session%seepage, session%disc, session%ground, session%state, rate)
+    write (output_unit, '(2a)') '  2/lambda_max by LAPACK  ', &
+      text_of(2.0_dp/maxval(real(rate, dp)), 6)//' s'
+  end subroutine print_rates
+
+  !> Say that a model is too large for all eigenvalues.
+  logical function too_large(nodes)
+    integer, intent(in) :: nodes
+
+    too_large = nodes > spectrum_most_nodes
+    if (too_large) write (output_unit, '(2a)') '  spectrum                only up to nodes: ', &
+      text_of(spectrum_most_nodes)
+  end function too_large
 end module talus_check

@@ -44,6 +44,11 @@ contains
     i = 2
     do while (i <= command_argument_count() .and. .not. status_failed(status))
       word = argument(i)
+      if (.not. is_taken(command, word)) then
+        call status_set(status, status_deck, 'unexpected "'//word//'" after '//command%word// &
+          '; allowed: '//takes(command%word))
+        return
+      end if
       select case (word)
       case ('--overwrite')
         command%overwrite = .true.
@@ -55,17 +60,10 @@ contains
         call read_threads(i + 1, command%threads, status)
         i = i + 1
       case ('--output')
-        command%output = argument(i + 1)
-        if (len(command%output) == 0) call status_set(status, status_deck, &
-          '--output needs a folder')
+        call read_folder(i + 1, command%output, status)
         i = i + 1
       case default
-        if (word(:min(1, len(word))) == '-' .or. len(command%argument) > 0) then
-          call status_set(status, status_deck, 'unexpected "'//word//'" after '//command%word// &
-            '; allowed: one deck, --threads N, --output DIR, --overwrite, --spectrum, --quick')
-        else
-          command%argument = word
-        end if
+        command%argument = word
       end select
       i = i + 1
     end do
@@ -73,6 +71,50 @@ contains
       call status_set(status, status_deck, command%word//' needs a deck: talus '//command%word// &
         ' DECK')
   end subroutine command_read
+
+  !> What may follow a word.
+  pure function takes(word) result(text)
+    character(*), intent(in) :: word
+    character(:), allocatable :: text
+
+    select case (word)
+    case ('run')
+      text = 'one deck, --threads N, --output DIR, --overwrite'
+    case ('check')
+      text = 'one deck, --threads N, --spectrum'
+    case ('keys')
+      text = 'one group'
+    case ('bench')
+      text = '--quick, --output DIR'
+    case default
+      text = 'nothing'
+    end select
+  end function takes
+
+  !> True when the command has a use for an argument. One that starts with - is an option.
+  pure logical function is_taken(command, argument)
+    type(command_t), intent(in) :: command
+    character(*), intent(in) :: argument
+
+    if (index(argument, '-') == 1) then
+      is_taken = scan(argument, ' ,') == 0 .and. &
+        (index(', '//takes(command%word)//',', ', '//argument//',') > 0 .or. &
+         index(', '//takes(command%word), ', '//argument//' ') > 0)
+    else
+      is_taken = index(takes(command%word), 'one ') == 1 .and. len(command%argument) == 0
+    end if
+  end function is_taken
+
+  !> Folder for results; an option in its place was surely not meant as one.
+  subroutine read_folder(place, folder, status)
+    integer, intent(in) :: place
+    character(:), allocatable, intent(out) :: folder
+    type(status_t), intent(inout) :: status
+
+    folder = argument(place)
+    if (len(folder) == 0 .or. index(folder, '-') == 1) call status_set(status, status_deck, &
+      '--output '//folder//': allowed: a folder (./-name when its name starts with -)')
+  end subroutine read_folder
 
   !> Number of threads.
   subroutine read_threads(place, threads, status)
@@ -105,11 +147,12 @@ contains
   subroutine command_help
     write (*, '(a)') 'talus: slopes that fail in the rain, from a namelist deck', '', &
       '  talus run DECK [--threads N] [--output DIR] [--overwrite]   run a deck', &
-      '  talus check DECK [--spectrum]   resolved deck, what is active and what it costs', &
+      '  talus check DECK [--threads N] [--spectrum]   resolved deck, what is active, what it '// &
+      'costs', &
       '  talus keys [GROUP]              every key with its unit, default and range', &
       '  talus manual                    the same as Markdown (input/README.md)', &
       '  talus bench [--quick] [--output DIR]   how fast, and what each part costs', &
       '  talus version', '  talus help', '', &
-      'exit codes: 0 done, 1 files could not be read or written, 2 bad input, 3 numerical failure'
+      'exit codes: 0 done, 1 results could not be written, 2 bad input, 3 numerical failure'
   end subroutine command_help
 end module talus_command

@@ -2,7 +2,8 @@
 !> Stage `dynamic`: real time with true masses (src/THEORY.md section 5.7).
 module talus_dynamic
   use talus_kinds, only: dp, i8
-  use talus_status, only: status_t, status_failed
+  use talus_status, only: status_t, status_failed, status_set, status_numeric
+  use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
   use talus_session, only: session_t
   use talus_conditions, only: conditions_follow
@@ -12,11 +13,11 @@ module talus_dynamic
   use talus_seepage, only: face_fluxes, seepage_step_limit
   use talus_audit, only: audit_driven
   use talus_stage_parts, only: take_load, move_water, put_off, snapshot_interval, report_broken
-  use talus_record, only: record_line, record_snapshot
+  use talus_record, only: record_line, record_snapshot, record_last_good
   use talus_timer, only: timer_start, timer_stop
   implicit none
   private
-  public :: run_dynamic
+  public :: run_dynamic, step_collapsed
 
   !> History lines of a dynamic stage when the deck does not say.
   integer, parameter :: dynamic_lines = 200
@@ -26,6 +27,9 @@ module talus_dynamic
   !> when that is more than this part of the node spacing, and with moving pore water now and then.
   integer(i8), parameter :: look_every = 20_i8, refresh_every = 240_i8
   real(dp), parameter :: refresh_travel = 0.02_dp
+  !> A step shorter than this part of the stage's first has collapsed. Soil that is squeezed to a
+  !> fiftieth, and water that stiffens it a thousandfold, shorten it by 1e4 together.
+  real(dp), parameter :: collapse_share = 1.0e-6_dp
 
 contains
 
@@ -34,16 +38,15 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
-    real(dp) :: travelled
+    real(dp) :: travelled, step_first
     real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval, speed
     integer :: failed
 
     done = 0.0_dp
+    step_first = session%motion%step
     since_water = 0.0_dp
     travelled = 0.0_dp
-    line_interval = stage%duration/real(dynamic_lines, dp)
-    if (deck_given(session%deck%output%history_interval)) &
-      line_interval = session%deck%output%history_interval
+    line_interval = line_pace(session, stage)
     next_line = line_interval
     next_snapshot = snapshot_interval(session, stage)
     water_interval = water_pace(session, stage)
@@ -57,22 +60,16 @@ contains
     do while (done < stage%duration .and. .not. status_failed(status))
       call timer_start(session%timer, 'soil')
       call look_at_step(session, travelled)
-      if (allocated(session%conditions%motion)) call conditions_follow(session%conditions, &
-        session%disc%mesh%x, session%state%u, session%motion%step, session%motion%step, &
-        session%state%v)
-      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
-                                                       session%state)
-      call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
-                     failed)
+      if (step_collapsed(session%motion%step, step_first, stage%duration)) then
+        call report_collapse(session, step_first, status)
+        return
+      end if
+      call advance(session, failed)
       call timer_stop(session%timer, 'soil')
       if (failed > 0) then
         call report_broken(session, failed, status)
         return
       end if
-      if (session%conditions%driven) call audit_driven(session%motion, session%work%force, &
-                                                       session%state)
-      if (allocated(session%conditions%floor)) call floor_land(session%conditions%floor, &
-        session%disc%mesh%x, session%motion, session%state)
       done = done + session%motion%step
       since_water = since_water + session%motion%step
       session%state%time = session%state%time + session%motion%step
@@ -97,6 +94,57 @@ contains
     end do
     call record_snapshot(session, status)
   end subroutine run_dynamic
+
+  !> One step of the soil, with driven nodes, the account of their work, and the floor.
+  subroutine advance(session, failed)
+    type(session_t), intent(inout) :: session
+    integer, intent(out) :: failed !! see soil_step
+
+    associate (disc => session%disc, conditions => session%conditions, motion => session%motion, &
+               state => session%state, work => session%work)
+      if (allocated(conditions%motion)) call conditions_follow(conditions, disc%mesh%x, state%u, &
+        motion%step, motion%step, state%v)
+      if (conditions%driven) call audit_driven(motion, work%force, state)
+      call soil_step(disc, session%ground, motion, state, work, failed)
+      if (failed > 0) return
+      if (conditions%driven) call audit_driven(motion, work%force, state)
+      if (allocated(conditions%floor)) call floor_land(conditions%floor, disc%mesh%x, motion, state)
+    end associate
+  end subroutine advance
+
+  !> Time between two history lines [s].
+  pure real(dp) function line_pace(session, stage) result(interval)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+
+    interval = stage%duration/real(dynamic_lines, dp)
+    if (deck_given(session%deck%output%history_interval)) &
+      interval = session%deck%output%history_interval
+  end function line_pace
+
+  !> True when a step is too short for time to reach the end of the stage, or is not a number.
+  pure logical function step_collapsed(step, first, duration)
+    real(dp), intent(in) :: step     !! [s]
+    real(dp), intent(in) :: first    !! step at the start of the stage [s]
+    real(dp), intent(in) :: duration !! of the stage [s]
+
+    step_collapsed = .not. (step >= collapse_share*first .and. duration + step > duration)
+  end function step_collapsed
+
+  !> Report a stable step that has collapsed, and save the last good state.
+  subroutine report_collapse(session, step_first, status)
+    type(session_t), intent(inout) :: session
+    real(dp), intent(in) :: step_first !! step at the start of the stage [s]
+    type(status_t), intent(inout) :: status
+
+    call timer_stop(session%timer, 'soil')
+    call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
+      ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
+      ': the stable step of the soil has fallen from '//text_of(step_first)//' to '// &
+      text_of(session%motion%step)//' s, too short for time to go on; last good state at '// &
+      text_of(session%last_good%time)//' s saved as snapshot last_good')
+    call record_last_good(session)
+  end subroutine report_collapse
 
   !> Find the stable step again where the soil has moved enough to change it.
   subroutine look_at_step(session, travelled)

@@ -8,6 +8,10 @@ module talus_place
   private
   public :: place_results, place_folder
 
+  !> What a run writes.
+  character(*), parameter :: endings(4) = [character(12) :: '.h5', '.xdmf', '_history.csv', &
+    '_summary.txt']
+
 contains
 
   !> Path of the result files without ending. Refuses results that exist unless they may be
@@ -18,7 +22,8 @@ contains
     logical, intent(in) :: overwrite
     character(:), allocatable, intent(out) :: base
     type(status_t), intent(inout) :: status
-    character(:), allocatable :: place
+    character(:), allocatable :: place, present
+    integer :: i
 
     place = deck%output%directory
     if (len(folder) > 0) place = folder
@@ -28,8 +33,14 @@ contains
         '&initial from_result: the results of this run would replace '//base//'.h5, from which '// &
         'it starts; nothing was written (choose another &run name or --output DIR)')
     end if
-    if (file_exists(base//'.h5') .and. .not. overwrite) call status_set(status, status_deck, &
-      base//'.h5 exists; nothing was written (allow with --overwrite, or choose --output DIR)')
+    if (overwrite) return
+    present = ''
+    do i = 1, size(endings)
+      if (endings(i) == '.xdmf' .and. .not. deck%output%xdmf) cycle
+      if (file_exists(base//trim(endings(i)))) present = present//', '//base//trim(endings(i))
+    end do
+    if (len(present) > 0) call status_set(status, status_deck, 'results exist: '//present(3:)// &
+      '; nothing was written (allow with --overwrite, or choose --output DIR)')
   end subroutine place_results
 
   !> Make the folder of the result files.

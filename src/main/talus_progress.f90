@@ -8,10 +8,12 @@ module talus_progress
   use talus_timer, only: timer_now
   implicit none
   private
-  public :: progress_t, progress_start, progress_show, progress_end, progress_say
+  public :: progress_t, progress_start, progress_show, progress_line, progress_end, progress_say
 
   !> Seconds between two updates.
   real(dp), parameter :: update_every = 0.25_dp
+  !> Letters of the line.
+  integer, parameter :: width = 100
   integer(c_int), parameter :: standard_error = 2_c_int
 
   type :: progress_t
@@ -50,25 +52,42 @@ contains
     real(dp), intent(in) :: water_error  !! relative
     real(dp), intent(in) :: energy_error !! relative
     real(dp) :: now, left
-    character(160) :: line
 
     if (.not. progress%terminal) return
     now = timer_now()
     if (now - progress%shown < update_every) return
     progress%shown = now
     left = (now - progress%stage_began)*(1.0_dp - fraction)/max(fraction, 1.0e-6_dp)
-    write (line, '(a,1x,f5.1,a,3x,2a,3x,a,a,3x,a,es8.1,a,es8.1)') progress%stage, &
-      100.0_dp*fraction, ' %', 't = ', duration_text(time), 'ETA ', duration_text(left), &
-      'water ', water_error, '  energy ', energy_error
-    write (error_unit, '(3a)', advance='no') achar(13), line(:100), achar(13)
+    write (error_unit, '(3a)', advance='no') achar(13), &
+      progress_line(progress%stage, fraction, time, left, water_error, energy_error), achar(13)
     flush (error_unit)
   end subroutine progress_show
+
+  !> The line, of a constant width: a long name of a stage is cut, so that the errors show.
+  pure function progress_line(stage, fraction, time, left, water_error, energy_error) result(line)
+    character(*), intent(in) :: stage
+    real(dp), intent(in) :: fraction     !! of the stage, 0..1
+    real(dp), intent(in) :: time         !! simulated [s]
+    real(dp), intent(in) :: left         !! wall clock to the end of the stage [s]
+    real(dp), intent(in) :: water_error  !! relative
+    real(dp), intent(in) :: energy_error !! relative
+    character(width) :: line
+    character(width) :: numbers
+    integer :: room
+
+    write (numbers, '(1x,f5.1,a,3x,2a,3x,a,a,3x,a,es8.1,a,es8.1)') 100.0_dp*fraction, ' %', &
+      't = ', duration_text(time), 'ETA ', duration_text(left), 'water ', water_error, &
+      '  energy ', energy_error
+    room = width - len_trim(numbers)
+    line = stage//numbers
+    if (len(stage) > room) line = stage(:room-2)//'..'//numbers
+  end function progress_line
 
   !> Clear the line.
   subroutine progress_end(progress)
     type(progress_t), intent(inout) :: progress
 
-    if (progress%terminal) write (error_unit, '(3a)', advance='no') achar(13), repeat(' ', 100), &
+    if (progress%terminal) write (error_unit, '(3a)', advance='no') achar(13), repeat(' ', width), &
       achar(13)
   end subroutine progress_end
 

@@ -14,7 +14,7 @@ module talus_record
   use talus_audit, only: energies_t, audit_energies, audit_energy_error, audit_stored_water, &
     audit_water_error
   use talus_relax, only: largest_motion
-  use talus_history, only: history_create, history_add, history_store
+  use talus_history, only: history_create, history_add, history_store, history_name_letters
   use talus_restart, only: restart_t, restart_write
   use talus_result, only: snapshot_begin, snapshot_begin_named, snapshot_field, snapshot_end
   use talus_timer, only: timer_start, timer_stop
@@ -24,13 +24,11 @@ module talus_record
   public :: record_start, record_line, record_snapshot, record_named, record_last_good
   public :: record_restart
 
-  integer, parameter :: letters = 64, most_columns = 400
-
   !> Columns of one history line.
   type :: columns_t
     integer :: n = 0
-    character(letters) :: name(most_columns), unit(most_columns)
-    real(dp) :: value(most_columns)
+    character(history_name_letters), allocatable :: name(:), unit(:)
+    real(dp), allocatable :: value(:)
   end type columns_t
 
 contains
@@ -88,6 +86,7 @@ contains
     type(columns_t), intent(out) :: columns
     integer :: i, node
 
+    allocate (columns%name(64), columns%unit(64), columns%value(64))
     associate (state => session%state, disc => session%disc)
       if (session%soil_moves) then
         call add('maximum_displacement', 'm', largest_motion(disc%n, state%u, state%u_zero))
@@ -153,13 +152,22 @@ contains
       character(*), intent(in) :: name, unit
       real(dp), intent(in) :: value
 
-      if (columns%n == most_columns) return
+      if (columns%n == size(columns%value)) call columns_double(columns)
       columns%n = columns%n + 1
       columns%name(columns%n) = name
       columns%unit(columns%n) = unit
       columns%value(columns%n) = value
     end subroutine add
   end subroutine collect
+
+  !> Twice the room for columns.
+  subroutine columns_double(columns)
+    type(columns_t), intent(inout) :: columns
+
+    columns%name = [columns%name, columns%name]
+    columns%unit = [columns%unit, columns%unit]
+    columns%value = [columns%value, columns%value]
+  end subroutine columns_double
 
   !> Write a numbered snapshot, and the history so far into the result file.
   subroutine record_snapshot(session, status)

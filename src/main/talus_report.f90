@@ -6,7 +6,7 @@ module talus_report
   use talus_kinds, only: dp, i8
   use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
-  use talus_text, only: text_of
+  use talus_text, only: text_of, text_as_word
   use talus_session, only: session_t
   use talus_soil_law, only: plasticity_none
   use talus_strength, only: strength_cone
@@ -22,11 +22,13 @@ module talus_report
 contains
 
   !> Write the summary. `outcome` is that of the run.
-  subroutine report_summary(session, outcome, status)
+  subroutine report_summary(session, outcome, warning, status)
     type(session_t), intent(inout) :: session
     type(status_t), intent(in) :: outcome
+    character(:), allocatable, intent(out) :: warning !! about what the run found, '' for none
     type(status_t), intent(inout) :: status
 
+    warning = warning_of(session)
     associate (summary => session%summary)
       call summary_create(summary, session%base//'_summary.txt')
       call summary_set(summary, 'title', session%deck%run%title)
@@ -35,6 +37,7 @@ contains
       call summary_set(summary, 'compiler', compiler_version())
       call summary_set(summary, 'exit_code', outcome%code)
       if (status_failed(outcome)) call summary_set(summary, 'failure', outcome%message)
+      if (len(warning) > 0) call summary_set(summary, 'warning', warning)
       if (len(session%restart_name) > 0) then
         call summary_set(summary, 'started_from', session%deck%initial%from_result)
         call summary_set(summary, 'started_from_snapshot', session%restart_name)
@@ -47,10 +50,26 @@ contains
     end associate
   end subroutine report_summary
 
+  !> What makes the results doubtful although the run ended well, '' for nothing.
+  function warning_of(session) result(warning)
+    type(session_t), intent(in) :: session
+    character(:), allocatable :: warning
+    real(dp) :: size
+
+    associate (x => session%disc%mesh%x)
+      size = norm2(maxval(x, dim=2) - minval(x, dim=2))
+    end associate
+    warning = ''
+    if (session%greatest_displacement > size) warning = 'the soil moved '// &
+      text_of(session%greatest_displacement, 4)//' m, further than the model is wide and high ('// &
+      text_of(size, 4)//' m): it fell freely or flew apart'
+  end function warning_of
+
   !> Size, smoothing and laws.
   subroutine report_model(session)
     type(session_t), intent(inout) :: session
     type(cone_t) :: cone
+    character(:), allocatable :: soil
     integer :: i
 
     associate (summary => session%summary, deck => session%deck, disc => session%disc)
@@ -67,10 +86,11 @@ contains
       call summary_set(summary, 'stabilisation', deck%smoothing%stabilisation)
       do i = 1, size(deck%soil)
         if (session%ground%law(i)%plasticity == plasticity_none) cycle
+        soil = text_as_word(trim(session%ground%name(i)))
         call strength_cone(session%ground%law(i)%strength, 0.0_dp, 0.0_dp, 1.0_dp, cone)
-        call summary_set(summary, 'cone_fit_'//trim(session%ground%name(i)), deck%soil(i)%fit)
-        call summary_set(summary, 'cone_alpha_'//trim(session%ground%name(i)), cone%alpha)
-        call summary_set(summary, 'cone_k_'//trim(session%ground%name(i)), cone%k)
+        call summary_set(summary, 'cone_fit_'//soil, deck%soil(i)%fit)
+        call summary_set(summary, 'cone_alpha_'//soil, cone%alpha)
+        call summary_set(summary, 'cone_k_'//soil, cone%k)
       end do
       call summary_set(summary, 'scaling_and_damping', session%declared)
     end associate

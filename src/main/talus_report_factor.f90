@@ -2,7 +2,7 @@
 !> The part of the summary that tells what strength reduction found.
 module talus_report_factor
   use talus_kinds, only: dp
-  use talus_text, only: text_of
+  use talus_text, only: text_of, text_as_word
   use talus_deck_types, only: stage_t
   use talus_session, only: session_t, reduction_t
   use talus_relax, only: relax_t, relax_moving, relax_exhausted
@@ -23,7 +23,7 @@ contains
     do i = 1, size(session%reduction)
       associate (stage => session%deck%stage(session%reduction(i)%stage))
         ending = ''
-        if (size(session%reduction) > 1) ending = '_'//stage%name
+        if (size(session%reduction) > 1) ending = '_'//text_as_word(stage%name)
         call report_factor(session%summary, session%reduction(i), stage, ending)
       end associate
     end do

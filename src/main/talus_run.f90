@@ -15,6 +15,7 @@ module talus_run
   use talus_soil_step, only: work_allocate
   use talus_conditions, only: inlets_t
   use talus_setup_conditions, only: setup_conditions, setup_steady
+  use talus_setup_support, only: setup_support
   use talus_steady, only: steady_solve
   use talus_setup_restart, only: setup_restart
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
@@ -61,7 +62,9 @@ contains
     do i = 1, size(deck%stage)
       call setup_conditions(deck, session%disc, deck%stage(i)%name, session%conditions, status)
       if (status_failed(status)) return
+      call setup_support(deck, session%disc, deck%stage(i), session%conditions, status)
     end do
+    if (status_failed(status)) return
     if (len(deck%initial%from_result) > 0) then
       call setup_restart(session, status)
     else
@@ -72,16 +75,18 @@ contains
   end subroutine run_prepare
 
   !> Run every stage of a deck and write its results to `base`.h5 and files beside it.
-  subroutine run_deck(deck, base, overwrite, status)
+  subroutine run_deck(deck, base, overwrite, warning, status)
     type(deck_t), intent(in) :: deck
     character(*), intent(in) :: base     !! path of the result files without ending
     logical, intent(in) :: overwrite     !! results that exist may be replaced
+    character(:), allocatable, intent(out) :: warning !! about what the run found, '' for none
     type(status_t), intent(inout) :: status
     type(session_t) :: session
     type(status_t) :: closing
     logical :: slides
     integer :: i
 
+    warning = ''
     call run_prepare(deck, session, status)
     if (status_failed(status)) return
     session%base = base
@@ -102,7 +107,7 @@ contains
     call timer_stop(session%timer, 'stages')
     call history_store(session%history, session%result%path, closing)
     call history_close(session%history, closing)
-    call report_summary(session, status, closing)
+    call report_summary(session, status, warning, closing)
     if (status_failed(closing)) call status_set(status, closing%code, closing%message)
   end subroutine run_deck
 

@@ -3,8 +3,8 @@
 module talus_setup_conditions
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
-  use talus_text, only: text_of
   use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_held, deck_acts_in
+  use talus_deck_messages, only: messages_t, messages_start, messages_error, messages_status
   use talus_disc, only: disc_t
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: conditions_t, conditions_allocate, conditions_hold, conditions_load, &
@@ -29,8 +29,11 @@ contains
     type(boundary_set_t) :: sets(size(deck%boundary))
     type(rain_t) :: rains(size(deck%boundary))
     type(inlet_paint_t) :: paint
+    type(messages_t) :: messages
+    type(status_t) :: empty
     integer :: i
 
+    call messages_start(messages, deck%path)
     call conditions_allocate(conditions, disc%n)
     call inlets_start(paint, disc%n)
     do i = 1, size(deck%boundary)
@@ -38,11 +41,13 @@ contains
       associate (boundary => deck%boundary(i))
         if (.not. deck_acts_in(boundary, stage)) cycle
         call boundary_set_build(sets(i), disc%mesh, disc%dual, boundary%where, &
-          [boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y], status)
-        if (status_failed(status)) then
-          status%message = '&boundary '//text_of(i)//' (name = '''//boundary%name//'''), '// &
-            status%message
-          return
+          [boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y], empty)
+        if (status_failed(empty)) then
+          call messages_error(messages, boundary%where_line, '&boundary where = '''// &
+            boundary%where//''': this model has no nodes there'// &
+            '; allowed: a part that has some')
+          empty = status_t()
+          cycle
         end if
         call add_supports(boundary, sets(i), conditions)
         call conditions_load(conditions, sets(i), [boundary%traction_x, boundary%traction_y], &
@@ -50,6 +55,8 @@ contains
         call add_water(boundary, sets(i), i, rains(i), paint, status)
       end associate
     end do
+    call messages_status(messages, 'the boundaries do not fit this model', status)
+    if (status_failed(status)) return
     call inlets_finish(conditions%inlets, paint, sets, rains)
   end subroutine setup_conditions
 

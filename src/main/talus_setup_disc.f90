@@ -4,7 +4,10 @@ module talus_setup_disc
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
+  use talus_read_file, only: file_problem
   use talus_deck_types, only: deck_t
+  use talus_deck_messages, only: messages_t, messages_start, messages_error, messages_lines, &
+    messages_status
   use talus_ground, only: ground_t
   use talus_nodes, only: mesh_t
   use talus_mesh_box, only: mesh_box
@@ -20,7 +23,7 @@ module talus_setup_disc
   use talus_timer, only: timer_t, timer_start, timer_stop
   implicit none
   private
-  public :: setup_disc
+  public :: setup_disc, setup_check_file
 
 contains
 
@@ -105,7 +108,7 @@ contains
                         geometry%toe_distance, geometry%crest_width, nodes%spacing, &
                         nodes%spacing_y, [geometry%origin_x, geometry%origin_y], status)
       case default
-        call mesh_file_read(mesh, geometry%file, status)
+        call read_node_file(deck, mesh, status)
         if (status_failed(status)) return
         mesh%x(1, :) = mesh%x(1, :) + geometry%origin_x
         mesh%x(2, :) = mesh%x(2, :) + geometry%origin_y
@@ -113,19 +116,61 @@ contains
     end associate
   end subroutine make_mesh
 
+  !> Nodes from a file; what is wrong with it is told as the deck's own errors are.
+  subroutine read_node_file(deck, mesh, status)
+    type(deck_t), intent(in) :: deck
+    type(mesh_t), intent(out) :: mesh
+    type(status_t), intent(inout) :: status
+    type(messages_t) :: messages
+    type(status_t) :: reading
+
+    call mesh_file_read(mesh, deck%geometry%file, reading)
+    if (.not. status_failed(reading)) return
+    call messages_start(messages, deck%path)
+    call messages_lines(messages, deck%geometry%file_line, node_file(deck), reading%message)
+    call messages_status(messages, 'no model can be made of the node file', status)
+  end subroutine read_node_file
+
+  !> Add what is wrong with the node file to the errors of a deck that has others.
+  subroutine setup_check_file(deck, messages)
+    type(deck_t), intent(in) :: deck           !! as far as it could be read
+    type(messages_t), intent(inout) :: messages
+    type(mesh_t) :: mesh
+    type(status_t) :: reading
+
+    if (.not. allocated(deck%geometry%kind)) return
+    if (deck%geometry%kind /= 'file' .or. len(deck%geometry%file) == 0) return
+    ! That it cannot be opened was told before.
+    if (len(file_problem(deck%geometry%file, '')) > 0) return
+    call mesh_file_read(mesh, deck%geometry%file, reading)
+    if (status_failed(reading)) call messages_lines(messages, deck%geometry%file_line, &
+      node_file(deck), reading%message)
+  end subroutine setup_check_file
+
+  !> The key that names the node file.
+  pure function node_file(deck) result(text)
+    type(deck_t), intent(in) :: deck
+    character(:), allocatable :: text
+
+    text = '&geometry file = '''//deck%geometry%file//''''
+  end function node_file
+
   !> Soil of each node: its number in the node file, or the last soil whose region holds it.
   subroutine assign_soils(deck, disc, status)
     type(deck_t), intent(in) :: deck
     type(disc_t), intent(inout) :: disc
     type(status_t), intent(inout) :: status
+    type(messages_t) :: messages
     integer :: i, k
 
     if (allocated(disc%mesh%soil)) then
       disc%soil = disc%mesh%soil
-      if (minval(disc%soil) < 1 .or. maxval(disc%soil) > size(deck%soil)) &
-        call status_set(status, status_deck, deck%geometry%file//': soil numbers go from '// &
-          text_of(minval(disc%soil))//' to '//text_of(maxval(disc%soil))//'; allowed: 1 to '// &
-          text_of(size(deck%soil))//', the &soil groups in the order of the deck')
+      if (maxval(disc%soil) <= size(deck%soil)) return
+      call messages_start(messages, deck%path)
+      call messages_error(messages, deck%geometry%file_line, node_file(deck)//': soil numbers '// &
+        'go up to '//text_of(maxval(disc%soil))//'; allowed: 1 to '//text_of(size(deck%soil))// &
+        ', the &soil groups in the order of the deck')
+      call messages_status(messages, 'the node file does not fit the deck', status)
       return
     end if
     allocate (disc%soil(disc%n), source=0)

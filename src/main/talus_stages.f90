@@ -87,10 +87,11 @@ contains
                             stage%step_safety, session%motion, session%work)
         call start_motion(session, stage)
         session%energies_start = audit_energies(disc, session%ground, session%motion, state)
+        if (len(session%declared) > 0) session%declared = session%declared//'; '
         session%declared = session%declared//stage%name//': mass scaling '// &
           trim(merge('on ', 'off', stage%mass_scaling))//', '//stage%mass// &
           ' mass, local damping '// &
-          text_of(stage%damping)//'; '
+          text_of(stage%damping)
       end if
       if (stage%solve /= 'soil') then
         session%seepage%explicit_only = stage%water_step == 'explicit'

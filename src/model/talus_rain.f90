@@ -4,18 +4,15 @@
 !! The intensity of a row holds from its time until the next row's; the last one holds for ever;
 !! there is no rain before the first. Intensity is volume per horizontal area and time [m/s].
 module talus_rain
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use talus_kinds, only: dp
   use talus_const, only: mm_per_hour
-  use talus_status, only: status_t, status_set, status_deck, status_failed
-  use talus_text, only: text_of
-  use talus_table_csv, only: table_csv_read
+  use talus_status, only: status_t
+  use talus_table_csv, only: table_csv_t, table_csv_status
+  use talus_deck_csv, only: hydrograph_read, hydrograph_check
   implicit none
   private
   public :: rain_t, rain_constant, rain_hydrograph, rain_read, rain_rate, rain_total
   public :: rain_next_change
-
-  real(dp), parameter :: intensity_greatest = 1.0e4_dp ! mm/h; ten times the record
 
   type :: rain_t
     real(dp), allocatable :: time(:)      !! start of each step [s], increasing
@@ -40,12 +37,16 @@ contains
     real(dp), intent(in) :: mm_each_hour(:) !! intensity [mm/h], >= 0
     type(rain_t), intent(out) :: rain
     type(status_t), intent(inout) :: status
+    type(table_csv_t) :: table
     integer :: i
 
-    call check_steps(time, mm_each_hour, 'hydrograph, row ', [(i, i=1, size(time))], status)
-    if (status_failed(status)) return
-    rain%time = time
-    rain%intensity = mm_each_hour*mm_per_hour
+    table%place = 'hydrograph, row '
+    allocate (table%values(2, size(time)))
+    table%values(1, :) = time
+    table%values(2, :) = mm_each_hour
+    table%lines = [(i, i=1, size(time))]
+    call hydrograph_check(table)
+    call take(table, rain, status)
   end subroutine rain_hydrograph
 
   !> Rain from a CSV file with the header time_s,mm_per_h.
@@ -53,41 +54,23 @@ contains
     character(*), intent(in) :: path
     type(rain_t), intent(out) :: rain
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: values(:, :)
-    integer, allocatable :: lines(:)
+    type(table_csv_t) :: table
 
-    call table_csv_read(path, 'time_s,mm_per_h', values, lines, status)
-    if (status_failed(status)) return
-    call check_steps(values(1, :), values(2, :), trim(path)//':', lines, status)
-    if (status_failed(status)) return
-    rain%time = values(1, :)
-    rain%intensity = values(2, :)*mm_per_hour
+    call hydrograph_read(path, table)
+    call take(table, rain, status)
   end subroutine rain_read
 
-  !> Times increase, intensities are rain; `place` and `lines` name the first wrong row.
-  subroutine check_steps(time, mm_each_hour, place, lines, status)
-    real(dp), intent(in) :: time(:), mm_each_hour(:)
-    character(*), intent(in) :: place
-    integer, intent(in) :: lines(:) !! line of each row
+  !> The rain of a table without faults.
+  subroutine take(table, rain, status)
+    type(table_csv_t), intent(in) :: table
+    type(rain_t), intent(inout) :: rain
     type(status_t), intent(inout) :: status
-    integer :: i
 
-    if (size(time) < 1) call status_set(status, status_deck, place//' no rows')
-    do i = 1, size(time)
-      if (.not. ieee_is_finite(time(i)) .or. .not. ieee_is_finite(mm_each_hour(i))) then
-        call status_set(status, status_deck, place//text_of(lines(i))//': not a finite number')
-      else if (mm_each_hour(i) < 0.0_dp .or. mm_each_hour(i) > intensity_greatest) then
-        call status_set(status, status_deck, place//text_of(lines(i))//': mm_per_h = '// &
-          text_of(mm_each_hour(i))//' is not allowed; allowed: 0 to '//text_of(intensity_greatest))
-      end if
-      if (status_failed(status)) return
-    end do
-    do i = 2, size(time)
-      if (time(i) <= time(i-1)) call status_set(status, status_deck, place// &
-        text_of(lines(i))//': time_s = '//text_of(time(i))//' is not allowed; allowed: > '// &
-        text_of(time(i-1))//' (times increase)')
-    end do
-  end subroutine check_steps
+    call table_csv_status(table, status)
+    if (table%faults > 0) return
+    rain%time = table%values(1, :)
+    rain%intensity = table%values(2, :)*mm_per_hour
+  end subroutine take
 
   !> Intensity at a time [m/s], >= 0.
   pure real(dp) function rain_rate(rain, time) result(rate)

@@ -7,15 +7,13 @@
 module talus_retention_table
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_deck, status_failed
-  use talus_text, only: text_of
-  use talus_table_csv, only: table_csv_read
+  use talus_table_csv, only: table_csv_t, table_csv_status
+  use talus_deck_csv, only: retention_read, retention_check
   use talus_special, only: log1p
   implicit none
   private
   public :: retention_table_t, retention_table_read, retention_table_make, retention_table_check
   public :: retention_table_saturation, retention_table_conductivity
-
-  real(dp), parameter :: conductivity_least = 1.0e-20_dp ! log k_r is interpolated
 
   type :: retention_table_t
     real(dp), allocatable :: suction(:)            !! [Pa], increasing
@@ -34,14 +32,13 @@ contains
     character(*), intent(in) :: path
     type(retention_table_t), intent(out) :: table
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: values(:, :)
-    integer, allocatable :: lines(:)
+    type(table_csv_t) :: points
 
-    call table_csv_read(path, 'suction_Pa,saturation,relative_conductivity', values, lines, status)
-    if (status_failed(status)) return
-    call check_points(values, trim(path)//':', lines, status)
-    if (status_failed(status)) return
-    call retention_table_make(values(1, :), values(2, :), values(3, :), table, status)
+    call retention_read(path, points)
+    call table_csv_status(points, status)
+    if (points%faults > 0) return
+    call retention_table_make(points%values(1, :), points%values(2, :), points%values(3, :), &
+                              table, status)
   end subroutine retention_table_read
 
   !> A table from its points.
@@ -73,8 +70,7 @@ contains
   subroutine retention_table_check(table, status)
     type(retention_table_t), intent(in) :: table
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: values(:, :)
-    integer, allocatable :: lines(:)
+    type(table_csv_t) :: points
     integer :: i
 
     if (.not. allocated(table%suction)) then
@@ -82,58 +78,15 @@ contains
         'a table: give file, a CSV with suction_Pa,saturation,relative_conductivity')
       return
     end if
-    allocate (values(3, size(table%suction)))
-    values(1, :) = table%suction
-    values(2, :) = table%saturation
-    values(3, :) = table%conductivity
-    lines = [(i, i=1, size(table%suction))]
-    call check_points(values, 'retention table, point ', lines, status)
+    points%place = 'retention table, point '
+    allocate (points%values(3, size(table%suction)))
+    points%values(1, :) = table%suction
+    points%values(2, :) = table%saturation
+    points%values(3, :) = table%conductivity
+    points%lines = [(i, i=1, size(table%suction))]
+    call retention_check(points)
+    call table_csv_status(points, status)
   end subroutine retention_table_check
-
-  !> Range and order of the points; `place` and `lines` say where the first wrong one stands.
-  subroutine check_points(values, place, lines, status)
-    real(dp), intent(in) :: values(:, :) !! (3, points)
-    character(*), intent(in) :: place
-    integer, intent(in) :: lines(:)      !! (points)
-    type(status_t), intent(inout) :: status
-    integer :: i, last
-
-    last = size(values, 2)
-    if (last < 2) then
-      call status_set(status, status_deck, place//' a retention table needs at least 2 points')
-      return
-    end if
-    if (values(1, 1) < 0.0_dp) call refuse(1, 1, 'suction_Pa', '>= 0')
-    if (abs(values(3, 1) - 1.0_dp) > 1.0e-9_dp) &
-      call refuse(1, 3, 'relative_conductivity', '1 at the first point')
-    do i = 1, last
-      if (values(1, i) > 1.0e9_dp) call refuse(i, 1, 'suction_Pa', '<= 1e9')
-      if (values(2, i) < 0.0_dp .or. values(2, i) > 1.0_dp) &
-        call refuse(i, 2, 'saturation', '0 to 1')
-      if (values(3, i) < conductivity_least .or. values(3, i) > 1.0_dp) &
-        call refuse(i, 3, 'relative_conductivity', '1e-20 to 1')
-    end do
-    do i = 2, last
-      if (values(1, i) <= values(1, i-1)) call refuse(i, 1, 'suction_Pa', &
-        '> '//text_of(values(1, i-1))//' (suctions increase)')
-      if (values(2, i) > values(2, i-1)) call refuse(i, 2, 'saturation', &
-        '<= '//text_of(values(2, i-1))//' (it falls with suction)')
-      if (values(3, i) > values(3, i-1)) call refuse(i, 3, 'relative_conductivity', &
-        '<= '//text_of(values(3, i-1))//' (it falls with suction)')
-    end do
-    if (values(2, last) >= values(2, 1)) &
-      call refuse(last, 2, 'saturation', '< '//text_of(values(2, 1))//' (the first one)')
-
-  contains
-
-    subroutine refuse(point, column, name, allowed)
-      integer, intent(in) :: point, column
-      character(*), intent(in) :: name, allowed
-
-      call status_set(status, status_deck, place//text_of(lines(point))//': '//name//' = '// &
-        text_of(values(column, point))//' is not allowed; allowed: '//allowed)
-    end subroutine refuse
-  end subroutine check_points
 
   !> Effective saturation, 1 at the first point and 0 from the last.
   pure real(dp) function retention_table_saturation(table, suction) result(effective)

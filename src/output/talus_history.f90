@@ -11,8 +11,8 @@ module talus_history
   private
   public :: history_create, history_add, history_store, history_close
 
-  !> Letters of a column's name and of its unit.
-  integer, parameter, public :: history_name_letters = 64
+  !> Letters of a column's name and of its unit: those of a boundary's name, and what is about it.
+  integer, parameter, public :: history_name_letters = 80
 
   !> A history being written. Its first columns are always time, stage and step.
   type, public :: history_t

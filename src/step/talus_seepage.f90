@@ -53,7 +53,7 @@ contains
 
   !> Advance the water from the state's time by `duration`, with the soil at rest. The state's time
   !> is left to the caller.
-  subroutine seepage_advance(seepage, disc, ground, inlets, start, duration, state)
+  subroutine seepage_advance(seepage, disc, ground, inlets, start, duration, state, most, reached)
     type(seepage_t), intent(inout) :: seepage
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
@@ -61,8 +61,11 @@ contains
     real(dp), intent(in) :: start    !! time for the rain [s]
     real(dp), intent(in) :: duration !! [s]
     type(state_t), intent(inout) :: state
+    integer, intent(in), optional :: most      !! sub-steps after which to give up, for trials
+    real(dp), intent(out), optional :: reached !! of the duration [s]
     type(newton_t) :: newton
     real(dp) :: done, step, limit, allowed, cost
+    integer(i8) :: last_step
     logical :: finished
 
     cost = newton_cost(disc)
@@ -70,6 +73,8 @@ contains
     call seepage_hold(seepage, inlets, state%pressure)
     call face_fluxes(seepage, disc, ground, state)
     limit = seepage_step_limit(seepage, disc, ground, state)
+    last_step = huge(last_step)
+    if (present(most)) last_step = state%seepage_steps + int(most, i8)
     done = 0.0_dp
     finished = .not. duration > 0.0_dp
     do while (.not. finished)
@@ -87,9 +92,11 @@ contains
       end if
       state%seepage_steps = state%seepage_steps + 1_i8
       limit = seepage_step_limit(seepage, disc, ground, state)
-      finished = done + step >= duration*(1.0_dp - 1.0e-14_dp)
+      finished = done + step >= duration*(1.0_dp - 1.0e-14_dp) .or. &
+        state%seepage_steps >= last_step
       done = done + step
     end do
+    if (present(reached)) reached = done
   end subroutine seepage_advance
 
   !> Time to the end or to the next change of a rain [s].

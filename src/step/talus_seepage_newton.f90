@@ -4,8 +4,9 @@
 !>   A (w(p) - w_old) rate + net outflow of the faces(p) - supply of the boundary = 0
 !>
 !> in every cell, by Newton's method with a line search and LAPACK's band solver; rate = 1/step, or
-!> 0 for the steady state. The Jacobian is differenced from the face fluxes with the smoothed gradient
-!> of a distorted grid as it is; inner iterations with the same factors add the change of that.
+!> 0 for the steady state. The Jacobian is differenced from the face fluxes with the smoothed
+!> gradient of a distorted grid as it is; inner iterations with the same factors add the change of
+!> that.
 !> Ponds and seepage faces are inequalities (p <= limit, and no more inflow than is supplied), kept
 !> by an active set: a node is held at its limit while that takes less than its supply
 !> (Hintermueller, Ito & Kunisch 2002).
@@ -17,9 +18,8 @@ module talus_seepage_newton
   use talus_conditions, only: inlets_t, inlet_head, inlet_rain, inlet_seepage
   use talus_storage, only: storage_capacity
   use talus_water_curve, only: curve_at_pressure
-  use talus_darcy, only: seepage_t, face_fluxes, face_two_point, face_oblique, &
-    oblique_mean, cell_outflow
-  use talus_head_slope, only: head_slope
+  use talus_darcy, only: seepage_t, face_fluxes, cell_outflow
+  use talus_seepage_slope, only: slope_t, slope_prepare, slope_faces, slope_outflow
   implicit none
   private
   public :: newton_t, newton_prepare, newton_solve, newton_cost
@@ -31,23 +31,17 @@ module talus_seepage_newton
     real(dp), allocatable :: residual(:)    !! [m2/s], (n)
     real(dp), allocatable :: change(:,:)    !! Newton's change of pressure [Pa], (n,1)
     real(dp), allocatable :: inner(:,:)     !! the same in an inner iteration [Pa], (n,1)
-    real(dp), allocatable :: head(:,:)      !! head of a change [m], (2,n); second row unused zeros
-    real(dp), allocatable :: gradient(:,:)  !! area times its gradient [m2], (4,n)
-    real(dp), allocatable :: oblique(:)     !! its oblique flux through each face [m2/s]
     real(dp) :: tolerance = 1.0e-7_dp       !! of the last relative change of pressure
     integer :: most = 15                    !! iterations allowed
     logical :: balanced = .true.            !! also the water left over must be worth no more
     real(dp), allocatable :: pressure(:)    !! before a line search [Pa], (n)
-    real(dp), allocatable :: probe(:,:)     !! step of differencing, potential and k there, (3,n)
-    real(dp), allocatable :: slope(:,:)     !! dq/dp at both ends of a face [m2/(s Pa)], (2,ne)
+    type(slope_t) :: slope                  !! of the fluxes
   end type newton_t
 
   !> Pressure below which a change is judged absolutely [Pa].
   real(dp), parameter :: pressure_scale = 100.0_dp
   !> A node's pressure changes by its own size and this at most in an iteration [Pa].
   real(dp), parameter :: reach = 5000.0_dp
-  !> Step of differencing relative to the pressure.
-  real(dp), parameter :: difference = 1.0e-7_dp
   !> Inner iterations for the oblique fluxes, and their last relative change.
   integer, parameter :: most_inner = 30
   real(dp), parameter :: inner_tolerance = 1.0e-4_dp
@@ -82,10 +76,8 @@ contains
     newton%band = maxval(abs(disc%dual%edge_node(2, :) - disc%dual%edge_node(1, :)))
     allocate (newton%matrix(3*newton%band + 1, disc%n), newton%pivot(disc%n), &
       newton%residual(disc%n), newton%change(disc%n, 1), newton%pressure(disc%n), &
-      newton%probe(3, disc%n), newton%slope(2, size(disc%dual%edge_node, 2)), &
-      newton%inner(disc%n, 1), newton%gradient(4, disc%n), &
-      newton%oblique(size(disc%dual%edge_node, 2)))
-    allocate (newton%head(2, disc%n), source=0.0_dp)
+      newton%inner(disc%n, 1))
+    call slope_prepare(newton%slope, disc)
   end subroutine newton_prepare
 
   !> Explicit steps that take as long as one implicit step: four iterations of assembly and of a
@@ -181,7 +173,8 @@ contains
     first = newton%change(:, 1)
     difference_before = huge(1.0_dp)
     do inner = 1, most_inner
-      call oblique_outflow(newton, seepage, disc, ground, ratio)
+      call slope_outflow(newton%slope, seepage, disc, ground, ratio, newton%change, .false., &
+        newton%inner)
       call dgbtrs('N', disc%n, newton%band, newton%band, 1, newton%matrix, rows, newton%pivot, &
         newton%inner, disc%n, info)
       newton%inner(:, 1) = first - newton%inner(:, 1)
@@ -195,36 +188,6 @@ contains
       difference_before = difference_now
     end do
   end subroutine find_change
-
-  !> Net outflow by the oblique fluxes of a change of pressure, 0 in held cells, into newton%inner.
-  subroutine oblique_outflow(newton, seepage, disc, ground, ratio)
-    type(newton_t), intent(inout) :: newton
-    type(seepage_t), intent(in) :: seepage
-    type(disc_t), intent(in) :: disc
-    type(ground_t), intent(in) :: ground
-    real(dp), intent(in) :: ratio(:) !! k_r, (n)
-    integer :: e, i
-
-    !$omp parallel default(none) shared(newton, seepage, disc, ground, ratio) private(e, i)
-    !$omp do schedule(static)
-    do i = 1, disc%n
-      newton%head(1, i) = newton%change(i, 1)/ground%unit_weight
-    end do
-    !$omp end do
-    call head_slope(disc, size(ground%law) > 1, newton%head, newton%gradient)
-    !$omp do schedule(static)
-    do e = 1, size(newton%oblique)
-      newton%oblique(e) = face_oblique(seepage, disc, e, ratio, newton%gradient)
-    end do
-    !$omp end do
-    !$omp do schedule(static)
-    do i = 1, disc%n
-      newton%inner(i, 1) = 0.0_dp
-      if (.not. seepage%held(i)) newton%inner(i, 1) = cell_outflow(disc%dual, newton%oblique, i)
-    end do
-    !$omp end do
-    !$omp end parallel
-  end subroutine oblique_outflow
 
   !> Water left over by the pressures found, as a relative pressure.
   pure real(dp) function left_over(newton, seepage, disc, rate, state) result(worst)
@@ -341,35 +304,21 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: rate
     type(state_t), intent(in) :: state
-    real(dp) :: unused(2)
     integer :: e, i, j, d
 
-    !$omp parallel default(none) shared(newton, seepage, disc, ground, state) private(i, e, unused)
-    !$omp do schedule(static)
-    do i = 1, disc%n
-      newton%probe(1, i) = -difference*(abs(state%pressure(i)) + pressure_scale)
-      call curve_at_pressure(ground%curve(disc%soil(i)), state%pressure(i) + newton%probe(1, i), &
-        unused(1), newton%probe(3, i), newton%probe(2, i), unused(2))
-    end do
-    !$omp end do
-    !$omp do schedule(static)
-    do e = 1, size(newton%slope, 2)
-      call face_slope(newton, seepage, disc, ground, state, e, newton%slope(:, e))
-    end do
-    !$omp end do
-    !$omp end parallel
+    call slope_faces(newton%slope, seepage, disc, ground, state)
     newton%matrix = 0.0_dp
     d = 2*newton%band + 1
     do i = 1, disc%n
       newton%matrix(d, i) = disc%dual%area(i)*rate*state%capacity(i)
     end do
-    do e = 1, size(newton%slope, 2)
+    do e = 1, size(disc%dual%edge_node, 2)
       i = disc%dual%edge_node(1, e)
       j = disc%dual%edge_node(2, e)
-      newton%matrix(d, i) = newton%matrix(d, i) + newton%slope(1, e)
-      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - newton%slope(1, e)
-      newton%matrix(d, j) = newton%matrix(d, j) - newton%slope(2, e)
-      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + newton%slope(2, e)
+      newton%matrix(d, i) = newton%matrix(d, i) + newton%slope%face(1, e)
+      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - newton%slope%face(1, e)
+      newton%matrix(d, j) = newton%matrix(d, j) - newton%slope%face(2, e)
+      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + newton%slope%face(2, e)
     end do
     do i = 1, disc%n
       if (.not. seepage%held(i)) cycle
@@ -379,40 +328,4 @@ contains
       newton%matrix(d, i) = 1.0_dp
     end do
   end subroutine assemble
-
-  !> Derivatives of a face's flux by the pressures at its ends, with the smoothed gradient of the
-  !> oblique part as it is.
-  pure subroutine face_slope(newton, seepage, disc, ground, state, e, slope)
-    type(newton_t), intent(in) :: newton
-    type(seepage_t), intent(in) :: seepage
-    type(disc_t), intent(in) :: disc
-    type(ground_t), intent(in) :: ground
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: e
-    real(dp), intent(out) :: slope(2) !! [m2/(s Pa)]
-    real(dp) :: p(2), phi(2), k(2), q, q_probe, peclet, mean, q_oblique
-    integer :: node(2), side
-
-    node = disc%dual%edge_node(:, e)
-    p = state%pressure(node)
-    phi = state%potential(node)
-    k = state%ratio(node)
-    call face_two_point(seepage, disc, ground, e, p, phi, k, q, peclet)
-    if (seepage%flux%oblique) then
-      mean = oblique_mean(seepage%flux%share(:, e), k)
-      q_oblique = face_oblique(seepage, disc, e, state%ratio, seepage%slope)
-    end if
-    do side = 1, 2
-      p(side) = p(side) + newton%probe(1, node(side))
-      phi(side) = newton%probe(2, node(side))
-      k(side) = newton%probe(3, node(side))
-      call face_two_point(seepage, disc, ground, e, p, phi, k, q_probe, peclet)
-      if (seepage%flux%oblique) q_probe = q_probe + q_oblique &
-        *(oblique_mean(seepage%flux%share(:, e), k)/mean - 1.0_dp)
-      slope(side) = (q_probe - q)/(p(side) - state%pressure(node(side)))
-      p(side) = state%pressure(node(side))
-      phi(side) = state%potential(node(side))
-      k(side) = state%ratio(node(side))
-    end do
-  end subroutine face_slope
 end module talus_seepage_newton

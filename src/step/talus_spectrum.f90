@@ -1,40 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> All eigenfrequencies of a small model by LAPACK, to see that no mode is spurious and that the
-!> estimate of the stable step is sharp (src/THEORY.md sections 4.5 and 5.1).
+!> All eigenfrequencies of the soil and all rates of the water of a small model by LAPACK, to see
+!> that no mode is spurious and that the estimates of the stable steps are sharp (src/THEORY.md
+!> sections 4.5, 5.1 and 5.5).
 module talus_spectrum
   use talus_kinds, only: dp
+  use talus_lapack, only: dsyev, dsygv, dgeev
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_soil_step, only: work_t, motion_t
   use talus_inertia, only: inertia_apply
   use talus_time_step, only: stiffness_apply, water_bulk_modulus
+  use talus_darcy, only: seepage_t
+  use talus_seepage_slope, only: slope_t, slope_prepare, slope_faces, slope_outflow
   implicit none
   private
-  public :: spectrum_frequencies
+  public :: spectrum_frequencies, spectrum_rates
 
   !> Largest model whose dense matrix is reasonable: (2n)^2 numbers.
   integer, parameter, public :: spectrum_most_nodes = 1500
-
-  interface
-    subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
-      import :: dp
-      character, intent(in) :: jobz, uplo
-      integer, intent(in) :: n, lda, lwork
-      real(dp), intent(inout) :: a(lda,*)
-      real(dp), intent(out) :: w(*), work(*)
-      integer, intent(out) :: info
-    end subroutine dsyev
-
-    subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
-      import :: dp
-      character, intent(in) :: jobz, uplo
-      integer, intent(in) :: itype, n, lda, ldb, lwork
-      real(dp), intent(inout) :: a(lda,*), b(ldb,*)
-      real(dp), intent(out) :: w(*), work(*)
-      integer, intent(out) :: info
-    end subroutine dsygv
-  end interface
 
 contains
 
@@ -98,4 +82,37 @@ contains
       end do
     end do
   end subroutine inverse_mass
+
+  !> Rates at which small changes of the pressures of free cells decay, the eigenvalues of C^-1 K;
+  !> the fluxes are not quite symmetric on distorted grids and under gravity, so a few may be
+  !> complex.
+  subroutine spectrum_rates(seepage, disc, ground, state, rate)
+    type(seepage_t), intent(in) :: seepage !! with the fluxes of the state
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    type(state_t), intent(in) :: state
+    complex(dp), allocatable, intent(out) :: rate(:) !! [1/s], in LAPACK's order
+    type(slope_t) :: slope
+    real(dp), allocatable :: a(:,:), change(:), outflow(:), parts(:,:), lapack_work(:)
+    real(dp) :: left(1, 1), right(1, 1)
+    integer, allocatable :: free(:)
+    integer :: i, k, m, info
+
+    free = pack([(i, i=1, disc%n)], .not. seepage%held)
+    m = size(free)
+    allocate (a(m, m), rate(m), parts(m, 2), lapack_work(max(1, 34*m)))
+    allocate (change(disc%n), outflow(disc%n))
+    call slope_prepare(slope, disc)
+    call slope_faces(slope, seepage, disc, ground, state)
+    do k = 1, m
+      change = 0.0_dp
+      change(free(k)) = 1.0_dp
+      call slope_outflow(slope, seepage, disc, ground, state%ratio, change, .true., outflow)
+      a(:, k) = outflow(free)/(disc%dual%area(free)*state%capacity(free))
+    end do
+    call dgeev('N', 'N', m, a, m, parts(:, 1), parts(:, 2), left, 1, right, 1, lapack_work, &
+      size(lapack_work), info)
+    rate = cmplx(parts(:, 1), parts(:, 2), dp)
+    if (info /= 0) rate = (-1.0_dp, 0.0_dp)
+  end subroutine spectrum_rates
 end module talus_spectrum

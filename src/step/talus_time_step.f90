@@ -14,17 +14,14 @@ module talus_time_step
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_residual, only: residual_gather
   use talus_inertia, only: inertia_apply
-  use talus_rayleigh, only: direction_t, direction_blend, direction_residual, direction_without, &
-    direction_unit, rayleigh_best
+  use talus_rayleigh, only: search_t, search_begin, search_turn, direction_start, &
+    direction_residual
   use talus_force, only: force_one_level, force_unbalanced
   use talus_soil_step, only: work_t, motion_t
   implicit none
   private
   public :: time_step_stable, stiffness_apply, water_bulk_modulus
 
-  !> Relative change of the eigenvalue at which the iteration stops, and its most turns.
-  real(dp), parameter :: tolerance = 1.0e-5_dp
-  integer, parameter :: turns_most = 200
   !> Part of the start vector that is new when the last fastest mode is known.
   real(dp), parameter :: start_share = 0.3_dp
 
@@ -38,54 +35,34 @@ contains
     type(motion_t), intent(inout) :: motion
     type(work_t), intent(inout) :: work
     real(dp), allocatable :: bulk(:), nothing(:,:)
-    type(direction_t) :: now, ahead, back
-    real(dp) :: square, before, share(3)
-    logical :: regular, turned
-    integer :: turn
+    type(search_t) :: search
+    real(dp) :: square
 
-    allocate (bulk(disc%n), nothing(2, disc%n), now%d(2, disc%n), now%m(2, disc%n))
+    allocate (bulk(disc%n), nothing(2, disc%n), search%now%d(2, disc%n), search%now%m(2, disc%n))
     nothing = 0.0_dp
     call water_bulk_modulus(disc, ground, state, motion%coupled, bulk)
-    call start_vector(motion%mobility, now%m)
     step = 0.0_dp
-    square = sum_products(2*disc%n, now%m, now%m)
-    if (square <= 0.0_dp) return
-    ! The fastest mode moves little from one look to the next; some of all others finds a new one.
-    if (allocated(motion%mode)) now%m = motion%mode + (start_share/sqrt(square))*now%m
-    call displace(disc, motion, now%m, now%d)
-    call stiffness_apply(disc, ground, state, bulk, nothing, now%d, work)
-    now%k = work%force
-    call direction_unit(now, regular)
-    ahead = now
-    back = now
-    square = sum_products(2*disc%n, now%d, now%k)
-    turned = .false.
-    do turn = 1, turns_most
-      ! The residual K d - omega^2 M d, and where it points: M^-1 K d - omega^2 d.
-      call direction_residual(now, square, ahead%m)
-      call displace(disc, motion, ahead%m, ahead%d)
-      call stiffness_apply(disc, ground, state, bulk, nothing, ahead%d, work)
-      ahead%k = work%force
-      call direction_unit(ahead, regular)
-      if (.not. regular) exit
-      call direction_without(now, ahead)
-      call direction_unit(ahead, regular)
-      if (turned) then
-        call direction_without(now, back)
-        call direction_without(ahead, back)
-        call direction_unit(back, turned)
-      end if
-      before = square
-      call rayleigh_best(now, ahead, back, turned, share, square)
-      ! What is added in this turn is the third direction of the next.
-      call direction_blend(share(2), ahead, share(3), back)
-      call direction_blend(1.0_dp, back, share(1), now)
-      call direction_unit(now, regular)
-      turned = .true.
-      if (square - before <= tolerance*square) exit
-    end do
-    step = 2.0_dp/sqrt(square)
-    motion%mode = now%m/sqrt(sum_products(2*disc%n, now%m, now%m))
+    associate (now => search%now, ahead => search%ahead)
+      call direction_start(motion%mobility, now%m)
+      square = sum_products(2*disc%n, now%m, now%m)
+      if (square <= 0.0_dp) return
+      ! The fastest mode moves little from one look to the next; some of all others finds a new one.
+      if (allocated(motion%mode)) now%m = motion%mode + (start_share/sqrt(square))*now%m
+      call displace(disc, motion, now%m, now%d)
+      call stiffness_apply(disc, ground, state, bulk, nothing, now%d, work)
+      now%k = work%force
+      call search_begin(search)
+      do while (.not. search%done)
+        ! The residual K d - omega^2 M d, and where it points: M^-1 K d - omega^2 d.
+        call direction_residual(now, search%quotient, ahead%m)
+        call displace(disc, motion, ahead%m, ahead%d)
+        call stiffness_apply(disc, ground, state, bulk, nothing, ahead%d, work)
+        ahead%k = work%force
+        call search_turn(search)
+      end do
+      step = 2.0_dp/sqrt(search%quotient)
+      motion%mode = now%m/sqrt(sum_products(2*disc%n, now%m, now%m))
+    end associate
   end function time_step_stable
 
   !> Displacement M^-1 times a force.
@@ -106,20 +83,6 @@ contains
     end do
     !$omp end parallel do
   end subroutine displace
-
-  !> Alternating values with an irregular part, so that no mode is left out.
-  pure subroutine start_vector(mobility, d)
-    real(dp), intent(in) :: mobility(:,:)
-    real(dp), intent(out) :: d(:,:)
-    integer :: i, j
-
-    do i = 1, size(d, 2)
-      do j = 1, 2
-        d(j, i) = real(modulo(i*(7919 + 104729*j), 1009), dp)/1009.0_dp - 0.5_dp
-      end do
-    end do
-    where (mobility <= 0.0_dp) d = 0.0_dp
-  end subroutine start_vector
 
   !> Stiffness of the pore water against a change of volume at constant water [Pa].
   subroutine water_bulk_modulus(disc, ground, state, coupled, bulk)

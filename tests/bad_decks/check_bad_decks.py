@@ -19,9 +19,10 @@ MESSAGE = re.compile(r"^\S+\.nml:(\d+:)? (error|warning): ")
 
 
 def copy_of(folder: pathlib.Path) -> None:
-    """Copy all decks, so that a program that writes can be caught at it."""
-    for source in FOLDER.glob("*.nml"):
-        (folder / source.name).write_bytes(source.read_bytes())
+    """Copy all decks and their tables, so that a program that writes can be caught at it."""
+    for source in FOLDER.iterdir():
+        if source.suffix in (".nml", ".csv", ".txt"):
+            (folder / source.name).write_bytes(source.read_bytes())
 
 
 def messages_of(program: str, deck: str, folder: pathlib.Path) -> tuple[list[str], int]:

@@ -13,7 +13,7 @@ import tempfile
 # Arguments, exit code, and a part of what is printed.
 CASES = [
     ([], 0, "talus run DECK"),
-    (["help"], 0, "exit codes: 0 done, 1 files"),
+    (["help"], 0, "exit codes: 0 done, 1 results could not be written, 2 bad input"),
     (["--help"], 0, "talus check DECK"),
     (["version"], 0, "talus "),
     (["-V"], 0, "talus "),
@@ -29,8 +29,20 @@ CASES = [
     (["run", "a.nml", "--threads", "two"], 2, "--threads two: allowed: a whole number from 1"),
     (["run", "a.nml", "--threads", "0"], 2, "--threads 0: allowed: a whole number from 1"),
     (["run", "a.nml", "--threads"], 2, "allowed: a whole number from 1 to 1024"),
-    (["run", "a.nml", "--output"], 2, "--output needs a folder"),
-    (["run", "no_such_deck.nml"], 2, "no_such_deck.nml"),
+    (["run", "a.nml", "--output"], 2, "--output : allowed: a folder"),
+    (["run", "a.nml", "--output", "--overwrite"], 2, "--output --overwrite: allowed: a folder"),
+    (["run", "a.nml", "--output", "--output", "out"], 2, "--output --output: allowed: a folder"),
+    (["run", "a.nml", "--spectrum"], 2, 'unexpected "--spectrum" after run; allowed: one deck, --threads N'),
+    (["run", "a.nml", "-"], 2, 'unexpected "-" after run'),
+    (["check", "a.nml", "--overwrite"], 2, 'unexpected "--overwrite" after check; allowed: one deck, '),
+    (["check", "a.nml", "--output", "out"], 2, 'unexpected "--output" after check'),
+    (["keys", "--threads", "3"], 2, 'unexpected "--threads" after keys; allowed: one group'),
+    (["keys", "run", "soil"], 2, 'unexpected "soil" after keys; allowed: one group'),
+    (["manual", "soil"], 2, 'unexpected "soil" after manual; allowed: nothing'),
+    (["bench", "a.nml"], 2, 'unexpected "a.nml" after bench; allowed: --quick, --output DIR'),
+    (["version", "extra"], 2, 'unexpected "extra" after version; allowed: nothing'),
+    (["help", "me"], 2, 'unexpected "me" after help; allowed: nothing'),
+    (["run", "no_such_deck.nml"], 2, "no such file; allowed: a path relative to the working folder"),
     (["check", "no_such_deck.nml"], 2, "no_such_deck.nml"),
 ]
 

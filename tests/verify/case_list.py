@@ -16,6 +16,15 @@ GROUPS = (
     ("hard", "Hard cases"),
 )
 
+# Benchmarks that must or should be met (P1 and P2 of benchmarks.md), and the hard cases.
+WANTED = (
+    *(f"M{i}" for i in range(1, 8)),
+    *(f"D{i}" for i in range(1, 4)),
+    *(f"H{i}" for i in range(1, 8)),
+    *("S1", "S3", "S4"),
+    *(f"hard {i}" for i in range(1, 12)),
+)
+
 
 @dataclass(frozen=True)
 class CaseFile:
@@ -76,6 +85,12 @@ def report_order(kind, id, name):
     letters = [letter for letter, _ in GROUPS]
     number = re.search(r"\d+", id)
     return letters.index(group_of(kind, id)), int(number[0]) if number else 0, id, name
+
+
+def without_case(ids):
+    """Which of WANTED no case has in its id; 'H5 rigid' and 'S1, S3' count for what they name."""
+    named = {word for id in ids for word in re.findall(r"[MDHS]\d+|hard \d+", id)}
+    return [id for id in WANTED if id not in named]
 
 
 def words_of(case):

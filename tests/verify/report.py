@@ -34,7 +34,7 @@ STUDY_COLUMNS = (
     "smoothing",
     "stabilisation",
 )
-TARGET_COLUMNS = ("case", "id", "date", "target", "measured", "at_least", "at_most", "met", "why")
+TARGET_COLUMNS = ("case", "id", "date", "asked", "target", "measured", "at_least", "at_most", "met", "why")
 
 
 def store_story(output, story):
@@ -70,9 +70,12 @@ def load_stories(output, cases):
         path = Path(output) / "report" / f"{case.key}.json"
         if path.exists():
             story = {"id": "", "title": "", "error": "", "reference": "", "about": "", "trouble": ""}
-            lists = {name: [] for name in ("runs", "targets", "remedies", "pictures", "notes", "published")}
+            lists = {
+                name: []
+                for name in ("runs", "targets", "remedies", "tables", "pictures", "notes", "published")
+            }
             story |= lists | json.loads(path.read_text(encoding="utf-8")) | {"key": case.key}
-            add_orders(story["runs"])
+            add_orders(story)
             stories.append(story)
     return sorted(stories, key=lambda s: report_order(s["kind"], s["id"], s["case"]))
 
@@ -89,19 +92,19 @@ def load_run(output):
     return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
 
-def add_orders(runs):
+def add_orders(story):
     """Observed order of each row against the next coarser one of its series, where there is one.
 
-    Round-off has no order.
+    Round-off has no order, nor has a case that says so.
     """
-    for row in runs:
+    for row in story.get("runs", []):
         coarser = [
             other
-            for other in runs
+            for other in story["runs"]
             if other["series"] == row["series"] and other["spacing"] > row["spacing"] * (1 + 1e-9)
         ]
         row["order"] = None
-        if coarser:
+        if coarser and story.get("order", True):
             other = min(coarser, key=lambda r: r["spacing"])
             if row["error"] > 0 and other["error"] > ROUND_OFF:
                 ratio = math.log(other["spacing"] / row["spacing"])
@@ -137,8 +140,8 @@ def write_tables(folder, stories):
             )
         for t in s["targets"]:
             targets.append(
-                [*head, t["what"], f"{t['value']:.6g}", rounded(t["low"]), f"{t['limit']:.6g}"]
-                + ["yes" if t["met"] else "no", t["why"]]
+                [*head, "yes" if t.get("asked") else "no", t["what"], f"{t['value']:.6g}"]
+                + [rounded(t["low"]), f"{t['limit']:.6g}", "yes" if t["met"] else "no", t["why"]]
             )
     write_csv(folder / "studies.csv", STUDY_COLUMNS, studies)
     write_csv(folder / "targets.csv", TARGET_COLUMNS, targets)

@@ -4,6 +4,7 @@
 import io
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -24,11 +25,13 @@ SIZE = (4.4, 3.0)  # inches
 def draw_pictures(story, folder):
     """Draw all pictures of a case; returns a list of (path, caption)."""
     use_style()
-    made = []
-    if story["runs"]:
-        made.append(draw_work(story, folder))
-        if any(len({row["spacing"] for row in rows}) > 2 for rows in series_of(story["runs"]).values()):
-            made.append(draw_convergence(story, folder))
+    made, rows = [], drawn_rows(story["runs"])
+    if rows and story.get("work", True):
+        made.append(draw_work(story, rows, folder))
+    if story.get("order", True) and any(
+        len({row["spacing"] for row in members}) > 2 for members in series_of(rows).values()
+    ):
+        made.append(draw_convergence(story, rows, folder))
     made += [draw_curves(story, picture, folder) for picture in story["pictures"]]
     return made
 
@@ -47,6 +50,23 @@ def save_small(figure, path):
 def series_of(rows, name="series"):
     """Rows of each series, in the order in which they came."""
     return {title: [r for r in rows if r[name] == title] for title in dict.fromkeys(r[name] for r in rows)}
+
+
+def drawn_rows(runs):
+    """The worst row of each curve and spacing, of the curves that are more than round-off."""
+    worst = {}
+    for row in runs:
+        key = row.get("curve", row["series"]), row["spacing"]
+        if key not in worst or row["error"] > worst[key]["error"]:
+            worst[key] = {**row, "series": key[0]}
+    curves = series_of(list(worst.values())).values()
+    return [row for rows in curves if max(r["error"] for r in rows) > ROUND_OFF for row in rows]
+
+
+def quantity(story):
+    """'Error', or what the case calls it."""
+    words = story.get("quantity", "error")
+    return words[:1].upper() + words[1:]
 
 
 def log_axis(axis, values):
@@ -98,47 +118,46 @@ def legend(figure, axes):
         figure.legend(handles, labels, loc="outside upper left", ncols=columns)
 
 
-def draw_work(story, folder):
+def draw_work(story, rows, folder):
     """Error over wall seconds, with published points of other programs beside ours."""
     figure, axes = plt.subplots(figsize=SIZE)
     published = {
-        title: (rows, {"color": GREY, "marker": mark, "linestyle": "--", "markersize": 5, "mfc": "white"})
-        for (title, rows), mark in zip(series_of(story["published"], "program").items(), "sD^v")
+        title: (points, {"color": GREY, "marker": mark, "linestyle": "--", "markersize": 5, "mfc": "white"})
+        for (title, points), mark in zip(series_of(story["published"], "program").items(), "sD^v")
     }
     ours = {
-        (f"TALUS, {title}" if published else title): (rows, style)
-        for (title, rows), style in zip(series_of(story["runs"]).items(), styles())
+        (f"TALUS, {title}" if published else title): (members, style)
+        for (title, members), style in zip(series_of(rows).items(), styles())
     }
     draw_points(axes, published | ours, "seconds")
     axes.set_xlabel("Wall time [s]")
-    axes.set_ylabel("Error [-]")
+    axes.set_ylabel(f"{quantity(story)} [-]")
     legend(figure, axes)
     path = save_small(figure, folder / f"{story['key']}_work_precision.png")
-    return path, "Error over time"
+    return path, f"{quantity(story)} over wall time"
 
 
-def draw_convergence(story, folder):
+def draw_convergence(story, rows, folder):
     """Error over node spacing, with slopes of first and second order to compare with."""
     figure, axes = plt.subplots(figsize=SIZE)
     series = {
-        title: rows
-        for title, rows in series_of(story["runs"]).items()
-        if len({row["spacing"] for row in rows}) > 1
+        title: members
+        for title, members in series_of(rows).items()
+        if len({row["spacing"] for row in members}) > 1
     }
-    ours = {title: (rows, style) for (title, rows), style in zip(series.items(), styles())}
+    ours = {title: (members, style) for (title, members), style in zip(series.items(), styles())}
     shown = draw_points(axes, ours, "spacing")
     first = sorted((r["spacing"], r["error"]) for r in next(iter(series.values())))
     spacing, error = first[len(first) // 2]
-    if error > ROUND_OFF:
-        ends = np.array([min(r["spacing"] for r in shown), max(r["spacing"] for r in shown)])
-        for order, dash in ((1, ":"), (2, "--")):
-            line = error * (ends / spacing) ** order
-            axes.plot(ends, line, color=GREY, linestyle=dash, linewidth=0.9, label=f"order {order}")
+    ends = np.array([min(r["spacing"] for r in shown), max(r["spacing"] for r in shown)])
+    for order, dash in ((1, ":"), (2, "--")):
+        line = error * (ends / spacing) ** order
+        axes.plot(ends, line, color=GREY, linestyle=dash, linewidth=0.9, label=f"order {order}")
     axes.set_xlabel("Node spacing [m]")
-    axes.set_ylabel("Error [-]")
+    axes.set_ylabel(f"{quantity(story)} [-]")
     legend(figure, axes)
     path = save_small(figure, folder / f"{story['key']}_convergence.png")
-    return path, "Error over spacing"
+    return path, f"{quantity(story)} over node spacing"
 
 
 def draw_curves(story, picture, folder):
@@ -157,7 +176,7 @@ def draw_curves(story, picture, folder):
     if picture.get("equal"):
         axes.set_aspect("equal")
     axes.set_xlabel(picture["x_label"])
-    axes.set_ylabel(picture["y_label"])
+    axes.set_ylabel(textwrap.fill(picture["y_label"], 38))
     axes.grid(True)
     legend(figure, axes)
     slug = re.sub(r"[^a-z0-9]+", "_", picture["name"].lower()).strip("_")

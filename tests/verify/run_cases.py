@@ -16,11 +16,11 @@ import time
 from pathlib import Path
 
 from case_list import find_cases, select_cases
-from report import load_stories, store_run, store_story, write_report
-from report_text import number
+from report import add_orders, load_stories, store_run, store_story, write_report
+from report_text import number, study_lines
 
 TESTS = Path(__file__).resolve().parents[1]
-TIME_LIMIT = 1800.0  # [s], for one case
+TIME_LIMIT = 600.0  # [s], for one case
 
 
 def parse_arguments():
@@ -120,7 +120,10 @@ def headline(story):
 
 
 def run_all(cases, options, logs):
-    """Run the cases, as many at once as asked for; prints a line as each ends; stories by key."""
+    """Run the cases, as many at once as asked for; stories by key.
+
+    As each ends, its story is stored, so that an interrupted run keeps what it found, and a line printed.
+    """
     seconds = {s["key"]: s.get("case_seconds", 0.0) for s in load_stories(options.output, cases)}
     # The longest first, so that the last to end is a short one.
     queue = sorted(cases, key=lambda case: -seconds.get(case.key, TIME_LIMIT))
@@ -131,19 +134,29 @@ def run_all(cases, options, logs):
             for done in concurrent.futures.as_completed(waiting):
                 case = waiting[done]
                 story = stories[case.key] = done.result()
+                store_story(options.output, story)
                 state = state_of(story)
                 print(
                     f"{state:4s} {case.label:34.34s} {story['case_seconds']:6.1f} s  {headline(story):.90s}",
                     flush=True,
                 )
+                print_study(story)
                 if state == "FAIL":
                     show_failure(logs / f"{case.key}.log")
         except KeyboardInterrupt:
             pool.shutdown(wait=False, cancel_futures=True)
             for process in list(running):
                 stop(process)
+            print(f"interrupted; what {len(stories)} cases found is kept for the next report")
             sys.exit(130)
     return stories
+
+
+def print_study(story):
+    """The rows of the case's study in mesh size."""
+    add_orders(story)
+    if story.get("runs"):
+        print("\n".join(f"       {line}" for line in study_lines(story)), flush=True)
 
 
 def show_failure(log):
@@ -189,8 +202,6 @@ def main():
         print(f"{len(cases)} cases, {options.jobs} at once", flush=True)
         load = os.getloadavg()[0]
         stories = run_all(cases, options, logs)
-    for story in stories.values():
-        store_story(options.output, story)
     elapsed = time.monotonic() - start
     if len(cases) == len(everything):
         store_run(options.output, elapsed=round(elapsed), jobs=options.jobs, load=round(load, 1))

@@ -8,6 +8,7 @@ import io
 import json
 import sys
 import tempfile
+import types
 import unittest
 import unittest.mock
 from pathlib import Path
@@ -17,7 +18,8 @@ from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import run_cases  # noqa: E402  (found through the path above)
+import case_list  # noqa: E402  (found through the path above)
+import run_cases  # noqa: E402
 from case_list import find_cases, select_cases  # noqa: E402
 from report import load_stories, store_run, store_story, thinned, write_report  # noqa: E402
 from report_text import number  # noqa: E402
@@ -140,6 +142,16 @@ class Report(unittest.TestCase):
         self.assertIn("it crashed", lines[4])
         self.assertIn("No results yet of: h3 (H3).", lines)
 
+    def test_benchmarks_without_a_case_are_named(self):
+        for i, id in enumerate(case_list.WANTED):
+            if id not in ("M6", "H5", "S1", "hard 6", "hard 11"):
+                self.add_case(f"case{i}", id, kind="hard" if id.startswith("hard") else "verify")
+        lines = self.write(story_of("dam", id="H5 rigid"), story_of("slopes", id="S1, S3"))
+        self.assertIn("**Without a case: M6, hard 6, hard 11.**", lines)
+        for name, id in (("six", "hard 6"), ("eleven", "hard 11")):
+            self.add_case(name, id, kind="hard")
+        self.assertNotIn("Without a case", "\n".join(self.write(story_of("m6"))))
+
     def test_observed_order(self):
         runs = [("fine", h, 3 * h**2, 1 / h) for h in (0.1, 0.05, 0.01)] + [("other", 0.1, 0.5, 1.0)]
         self.write(story_of("h1", runs=runs))
@@ -247,9 +259,18 @@ class Report(unittest.TestCase):
             else:
                 self.assertRegex(printed.getvalue(), r"MISS|2 targets, 1 not met")
 
+    def test_a_case_that_ends_is_stored_at_once(self):
+        self.add_case("met", body=MET)
+        cases = find_cases(self.tests)
+        options = types.SimpleNamespace(program="/bin/true", output=self.folder / "out", jobs=1)
+        with contextlib.redirect_stdout(io.StringIO()):
+            run_cases.run_all(cases, options, self.folder)
+        self.assertEqual([s["case"] for s in load_stories(options.output, cases)], ["met"])
+
     def test_real_cases_are_found(self):
-        found = {case.name for case in find_cases(Path(__file__).resolve().parents[1])}
-        self.assertLessEqual({"celia", "srivastava_yeh", "patch"}, found)
+        found = find_cases(Path(__file__).resolve().parents[1])
+        self.assertLessEqual({"celia", "srivastava_yeh", "patch"}, {case.name for case in found})
+        self.assertEqual(case_list.without_case([case.id for case in found]), [])
 
 
 class Numbers(unittest.TestCase):

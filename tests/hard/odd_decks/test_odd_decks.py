@@ -47,7 +47,7 @@ class Outcome:
 
     def __init__(self, folder: pathlib.Path, run: subprocess.CompletedProcess):
         self.code = run.returncode
-        self.message = run.stderr.decode()
+        self.message, self.report = run.stderr.decode(), run.stdout.decode()
         self.files = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
         self.summary, self.history = {}, []
         if (folder / "deck_summary.txt").exists():
@@ -62,13 +62,13 @@ class Outcome:
         return [row for row in self.history if row["stage"] == stage]
 
 
-def run(*groups: tuple[str, dict]) -> Outcome:
-    """Run a deck of (group, keys)."""
+def run(*groups: tuple[str, dict], word: str = "run") -> Outcome:
+    """Run, or check, a deck of (group, keys)."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "deck.nml").write_text("".join(group(*item) for item in groups))
         result = subprocess.run(
-            [PROGRAM, "run", "deck.nml"], cwd=folder, capture_output=True, timeout=120, check=False
+            [PROGRAM, word, "deck.nml"], cwd=folder, capture_output=True, timeout=120, check=False
         )
         return Outcome(folder / "results", result)
 
@@ -122,6 +122,7 @@ class OddDecks(unittest.TestCase):
         outcome = run(("run", {"gravity": 0.0}), *model(), ("stage", GRAVITY), ("stage", DYNAMIC))
         self.stands(outcome)
         self.assertEqual(float(outcome.summary["maximum_displacement"]), 0.0)
+        self.assertNotIn("warning", outcome.summary)
 
     def test_storm_without_geostatic(self):
         outcome = run(*rainy(), ("stage", STORM))
@@ -197,6 +198,35 @@ class OddDecks(unittest.TestCase):
         self.assertRegex(outcome.message, r"largest at node \d+ at \([\d., ]+\) m; largest displacement")
         self.assertRegex(outcome.message, r"displacement [\d.e-]+ m at node \d+ at \([\d.]+, [12]\.\d\) m;")
         self.assertIn("state saved as snapshot last_good", outcome.message)
+
+    def test_check_ends_where_water_moves_fast(self):
+        """A water table far above the body: a trial of a whole step of the storm would take hours."""
+        table = {**TABLE, "water_table": 1e7, "suction_limit": 3e4}
+        groups = [item for item in rainy() if item[0] != "initial"]
+        outcome = run(*groups, ("initial", table), ("stage", {**STORM, "solve": "seepage"}), word="check")
+        self.assertEqual(outcome.code, 0, outcome.message)
+        self.assertRegex(outcome.report, r"seepage steps, about    \S+, by the first few")
+
+    def test_every_probe_has_its_columns(self):
+        points = [0.01 * i for i in range(201)]
+        outcome = run(*model(), ("output", {"probe_x": points, "probe_y": points}), ("stage", GRAVITY))
+        self.stands(outcome)
+        columns = outcome.history[0].keys()
+        self.assertEqual(sum(name.startswith("probe_") for name in columns), 402)
+        self.assertIn("probe_201_displacement_y", columns)
+
+    def test_names_are_words_in_the_summary(self):
+        outcome = run(*model({**PLASTIC, "name": "b = c"}), ("stage", GRAVITY), ("stage", DYNAMIC))
+        self.stands(outcome)
+        self.assertIn("cone_fit_b___c", outcome.summary)
+        self.assertRegex(outcome.summary["scaling_and_damping"], r"^gravity: .*; slide: .* damping 0\.0$")
+
+    def test_a_body_that_falls_freely_is_warned_of(self):
+        body = [item for item in model() if item[0] != "boundary"]
+        outcome = run(*body, ("stage", {**DYNAMIC, "duration": 1.0}))
+        self.stands(outcome)
+        self.assertIn("warning: the soil moved 4.9", outcome.message)
+        self.assertIn("further than the model is wide and high (2.828 m)", outcome.summary["warning"])
 
     def test_a_missing_boundary_is_told_before_anything_is_written(self):
         outcome = run(

@@ -4,6 +4,7 @@ program talus
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use talus_command, only: command_t, command_read, command_help
+  use talus_waiting, only: wait_briefly
   use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t
   use talus_deck_messages, only: messages_t, messages_text
@@ -31,6 +32,7 @@ program talus
 
   call command_read(command, status)
   if (.not. status_failed(status)) then
+    if (any(command%word == ['run  ', 'check', 'bench'])) call wait_briefly
     select case (command%word)
     case ('run')
       call load

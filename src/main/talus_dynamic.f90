@@ -163,6 +163,7 @@ contains
     end associate
   end subroutine look_at_step
 
+  !> Time between two moves of the water in real time [s]: its stable step, or a hundredth of the
   !> stage, but one soil step at least.
   real(dp) function water_pace(session, stage) result(interval)
     type(session_t), intent(inout) :: session

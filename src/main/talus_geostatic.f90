@@ -9,8 +9,8 @@ module talus_geostatic
   use talus_session, only: session_t
   use talus_setup_ground, only: ground_intact
   use talus_initial, only: initial_water
-  use talus_relax, only: relax_t, relax, largest_motion, relax_balanced, relax_broken
-  use talus_stage_parts, only: report_broken
+  use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
+  use talus_stage_parts, only: report_broken, node_text
   use talus_record, only: record_line, record_snapshot, record_last_good
   implicit none
   private
@@ -21,6 +21,7 @@ module talus_geostatic
 
 contains
 
+  !> Gravity to equilibrium with the pore pressure as given, in soil that neither softens nor
   !> breaks.
   subroutine run_geostatic(session, stage, status)
     type(session_t), intent(inout) :: session
@@ -62,15 +63,30 @@ contains
                                             /log(stage%tolerance)), status)
       if (outcome%outcome == relax_balanced) return
       if (done < stage%steps_max .or. status_failed(status)) cycle
-      session%last_good = session%state
-      call record_last_good(session)
-      call status_set(status, status_numeric, 'stage '//stage%name//': no equilibrium within '// &
-        'steps_max = '//text_of(stage%steps_max)//' steps: out-of-balance force '// &
-        text_of(outcome%ratio)//' of the load, allowed '//text_of(stage%tolerance)// &
-        ', largest displacement '//text_of(largest_motion(session%disc%n, session%state%u, &
-        session%state%u_zero))//' m; the slope does not stand, or steps_max is too small')
+      call report_unbalanced(session, stage, outcome%ratio, status)
     end do
   end subroutine settle
+
+  !> Report where the soil found no equilibrium, and save its state.
+  subroutine report_unbalanced(session, stage, ratio, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: ratio !! out-of-balance force over the load
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: force(:), moved(:)
+
+    session%last_good = session%state
+    call record_last_good(session)
+    force = sum(merge(session%work%force, 0.0_dp, session%motion%mobility > 0.0_dp)**2, dim=1)
+    moved = norm2(session%state%u - session%state%u_zero, dim=1)
+    call status_set(status, status_numeric, 'stage '//stage%name//', time '// &
+      text_of(session%state%time)//' s: no equilibrium within steps_max = '// &
+      text_of(stage%steps_max)//' steps: out-of-balance force '//text_of(ratio)// &
+      ' of the load, allowed '//text_of(stage%tolerance)//', largest at '// &
+      node_text(session, maxloc(force, dim=1))//'; largest displacement '// &
+      text_of(maxval(moved))//' m at '//node_text(session, maxloc(moved, dim=1))// &
+      '; the slope does not stand, or steps_max is too small; state saved as snapshot last_good')
+  end subroutine report_unbalanced
 
   !> Count displacement, strain and the history of the soil from here.
   subroutine reset(session)

@@ -15,7 +15,8 @@ module talus_stage_parts
   use talus_timer, only: timer_start, timer_stop
   implicit none
   private
-  public :: take_load, move_water, take_back, is_due, put_off, snapshot_interval, report_broken
+  public :: take_load, move_water, take_back, is_due, put_off, snapshot_interval, report_broken, &
+    node_text
 
 contains
 
@@ -99,9 +100,18 @@ contains
     if (code == soil_inverted) what = 'the soil is turned inside out (det F <= 0)'
     call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
       ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
-      ', node '//text_of(node)//' at ('//text_of(session%disc%mesh%x(1, node))//', '// &
-      text_of(session%disc%mesh%x(2, node))//') m: '//what//'; last good state at '// &
+      ', '//node_text(session, node)//': '//what//'; last good state at '// &
       text_of(session%last_good%time)//' s saved as snapshot last_good')
     call record_last_good(session)
   end subroutine report_broken
+
+  !> A node by its number and where it was at the start.
+  function node_text(session, node) result(text)
+    type(session_t), intent(in) :: session
+    integer, intent(in) :: node
+    character(:), allocatable :: text
+
+    text = 'node '//text_of(node)//' at ('//text_of(session%disc%mesh%x(1, node))//', '// &
+      text_of(session%disc%mesh%x(2, node))//') m'
+  end function node_text
 end module talus_stage_parts

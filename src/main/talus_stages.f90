@@ -102,6 +102,7 @@ contains
     session%last_good = session%state
   end subroutine stage_begin
 
+  !> Velocities at the start of a stage: real motion goes on from one dynamic stage to the next, all
   !> else starts at rest; prescribed velocities hold at once.
   subroutine start_motion(session, stage)
     type(session_t), intent(inout) :: session

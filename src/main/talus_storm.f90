@@ -22,6 +22,7 @@ module talus_storm
 
 contains
 
+  !> Steps of the storm clock: the water moves, then the soil finds its equilibrium. When it finds
   !> none, the step is taken back and halved, until the time of failure is known.
   subroutine run_storm(session, stage, status)
     type(session_t), intent(inout) :: session

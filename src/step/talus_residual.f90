@@ -12,6 +12,7 @@ contains
 
   !> Add the pairs' part to area times Piola stress, and give their nodal force. The stiffness of a
   !> pair follows the softer of its nodes, so that a shear band is not bridged from its sides.
+  !> `energy` comes in as that of one step ago.
   subroutine residual_gather(stabilise, u, h, scale, before, q, force, energy, loss)
     type(stabilise_t), intent(in) :: stabilise
     real(dp), contiguous, intent(in) :: u(:,:)      !! displacement [m], (2,n)
@@ -32,7 +33,7 @@ contains
     integer, intent(in) :: n, offset(*), node(*)
     real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*)
     real(dp), intent(inout) :: q(4,*), force(2,*), energy(*), loss(*)
-    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone
+    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone, whole
     integer :: i, j, k
 
     !$omp do schedule(static)
@@ -71,8 +72,11 @@ contains
       q(2, i) = q(2, i) - p12
       q(3, i) = q(3, i) - p21
       q(4, i) = q(4, i) - p22
+      ! Forces at both ends of the step work, so what softening takes is 1/2 lost r_old.r_new. All
+      ! residuals of a node are taken to change by one ratio, the root of that of its energies.
+      whole = total + gone
+      if (whole > 0.0_dp) loss(i) = loss(i) + 0.25_dp*gone*sqrt(4.0_dp*energy(i)/whole)
       energy(i) = 0.25_dp*total
-      loss(i) = loss(i) + 0.25_dp*gone
     end do
     !$omp end do
   end subroutine gather

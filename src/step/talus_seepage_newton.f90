@@ -173,8 +173,8 @@ contains
     first = newton%change(:, 1)
     difference_before = huge(1.0_dp)
     do inner = 1, most_inner
-      call slope_outflow(newton%slope, seepage, disc, ground, ratio, newton%change(:, 1), .false., &
-        newton%inner(:, 1))
+      call slope_outflow(newton%slope, seepage, disc, ground, ratio, newton%change, .false., &
+        newton%inner)
       call dgbtrs('N', disc%n, newton%band, newton%band, 1, newton%matrix, rows, newton%pivot, &
         newton%inner, disc%n, info)
       newton%inner(:, 1) = first - newton%inner(:, 1)

@@ -109,9 +109,9 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     real(dp), contiguous, intent(in) :: ratio(:)  !! k_r, (n)
-    real(dp), contiguous, intent(in) :: change(:) !! of pressure [Pa], (n)
+    real(dp), intent(in) :: change(disc%n)        !! of pressure [Pa], any array of n
     logical, intent(in) :: all_fluxes
-    real(dp), contiguous, intent(inout) :: outflow(:) !! [m2/s], (n)
+    real(dp), intent(inout) :: outflow(disc%n)    !! [m2/s], any array of n
     integer :: e, i
 
     !$omp parallel default(none) private(e, i) &

@@ -68,7 +68,7 @@ contains
       real(dp), contiguous, intent(in) :: d(:,:)    !! pressures [Pa], (1,n)
       real(dp), contiguous, intent(inout) :: k(:,:) !! outflow times k_r [m2/s], (1,n)
 
-      call slope_outflow(slope, seepage, disc, ground, state%ratio, d(1, :), .true., k(1, :))
+      call slope_outflow(slope, seepage, disc, ground, state%ratio, d, .true., k)
       k(1, :) = weight*k(1, :)
     end subroutine conduct
   end function seepage_step_stable

@@ -122,6 +122,7 @@ contains
     integer :: i
 
     allocate (energy(disc%n), loss(disc%n), one(disc%n))
+    energy = 0.0_dp
     loss = 0.0_dp
     one = 1.0_dp
     !$omp parallel default(none) shared(disc, ground, state, bulk, nothing, d, work, energy, loss) &

@@ -46,6 +46,13 @@ CASES = [
     (["check", "no_such_deck.nml"], 2, "no_such_deck.nml"),
 ]
 
+# How threads wait: what the user has set, and what libgomp is told.
+WAITING = [
+    ({}, "GOMP_SPINCOUNT = '1000'"),
+    ({"GOMP_SPINCOUNT": "77"}, "GOMP_SPINCOUNT = '77'"),
+    ({"OMP_WAIT_POLICY": "passive"}, "GOMP_SPINCOUNT = '0'"),
+]
+
 
 def fault_of(program, arguments, code, part):
     """What is wrong with a case, '' for nothing."""
@@ -62,15 +69,37 @@ def fault_of(program, arguments, code, part):
     return f"left {left}" if left else ""
 
 
+def fault_of_waiting(program, chosen, part):
+    """What is wrong with how threads wait, by what libgomp says it was told; '' for nothing."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+    run = subprocess.run(
+        [program, "check", "no such deck.nml"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**kept, "OMP_DISPLAY_ENV": "verbose", **chosen},
+    )
+    last = run.stderr[run.stderr.rfind("OPENMP DISPLAY ENVIRONMENT BEGIN") :]
+    if part not in last:
+        return f"libgomp was not told {part}, but:\n{last}"
+    return "" if "no such deck.nml" in last else f"words were lost at the second start:\n{last}"
+
+
 def main():
     """Run all cases."""
     faults = 0
+    for chosen, part in WAITING:
+        fault = fault_of_waiting(sys.argv[1], chosen, part)
+        faults += bool(fault)
+        if fault:
+            print(f"talus check with {chosen}: {fault}")
     for arguments, code, part in CASES:
         fault = fault_of(sys.argv[1], arguments, code, part)
         faults += bool(fault)
         if fault:
             print(f"talus {' '.join(arguments)}: {fault}")
-    print(f"{len(CASES)} command lines, {faults} wrong")
+    print(f"{len(CASES) + len(WAITING)} command lines, {faults} wrong")
     return 1 if faults else 0
 
 

@@ -278,8 +278,8 @@ def case_text(story, pictures, tests):
         ]
         parts += ["", table(["target", "measured", "wanted", "met"], rows, right=(1, 2))]
     if story["remedies"]:
-        rows = [[r["what"], r["without"], r["remedied"]] for r in story["remedies"]]
-        parts += ["", table(["hazard and remedy", "without the remedy", "with it"], rows)]
+        rows = [[r["what"], r["without"], r.get("by", "TALUS"), r["remedied"]] for r in story["remedies"]]
+        parts += ["", table(["hazard and remedy", "without the remedy", "run without by", "with it"], rows)]
     for extra in story["tables"]:
         parts += ["", f"{extra['name']}:", "", table(extra["head"], extra["rows"])]
     if story.get("checks"):

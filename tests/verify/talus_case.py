@@ -229,17 +229,18 @@ class Case:
             self.target(f"time at {what} over that of {program}", ours / theirs, 1.0, story, asked=True)
         self.note(f"TALUS takes {ours:.3g} s for an error of {error:.2g}; {story}.")
 
-    def remedy(self, what, without, remedied, shown):
+    def remedy(self, what, without, remedied, shown, by="TALUS"):
         """What goes wrong without a remedy, run and shown.
 
         `what` tells hazard and remedy, `without` and `remedied` what was measured without and with it (text
-        with numbers); `shown` is true if the run without the remedy did go wrong.
+        with numbers); `shown` is true if the run without the remedy did go wrong. `by`: what ran without
+        it, where TALUS has no such choice.
         """
         self.failures += not shown
         self.story["remedies"].append(
-            {"what": what, "without": without, "remedied": remedied, "shown": bool(shown)}
+            {"what": what, "without": without, "remedied": remedied, "shown": bool(shown), "by": by}
         )
-        print(f"{'ok  ' if shown else 'FAIL'} {what}: without {without}; with {remedied}")
+        print(f"{'ok  ' if shown else 'FAIL'} {what}: without (by {by}) {without}; with {remedied}")
 
     def picture(self, name, x_label, y_label, curves, log_x=False, log_y=False, **more):
         """A line picture of the report. `curves`: name -> (x, y) or (x, y, matplotlib format).
@@ -267,7 +268,8 @@ class Case:
         )
 
     def table(self, name, head, rows):
-        """A table of the report besides the study: texts, or numbers, in columns."""
+        """A table of the report besides the study; its values are shown as they are."""
+        rows = [[str(value) for value in row] for row in rows]
         self.story["tables"].append({"name": name, "head": head, "rows": rows})
         for row in rows:
             print("     " + ", ".join(f"{title} {value}" for title, value in zip(head, row)))

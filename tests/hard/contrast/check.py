@@ -98,9 +98,9 @@ def weights(spacings):
     )
     order = np.argsort(y, kind="stable")
     case.picture(
-        "stress",
-        "vertical stress [kPa]",
-        "elevation [m]",
+        "Vertical stress over the height",
+        "Vertical stress [kPa]",
+        "Elevation [m]",
         {
             "exact": (exact[order] / 1e3, y[order]),
             "TALUS": (stress[order] / 1e3, y[order], "."),
@@ -147,11 +147,12 @@ def flows(spacings):
         case.target(f"h = {spacing} m: water error", abs(float(run.summary["water_error"])), 1e-12, "limit")
         wrong = arithmetic_flux(spacing) / series - 1
     case.remedy(
-        "flux between soils with arithmetic means of conductivity at faces (computed here on the same rows); "
+        "flux between soils with arithmetic means of conductivity at faces; "
         "remedy: halves of an edge in series",
         f"{wrong:.2g} relative error of the flux at h = {spacing} m",
         f"{abs(flux / series - 1):.1g}",
         abs(wrong) > 0.01,
+        by="numpy stand-in on the same rows, not TALUS",
     )
 
 

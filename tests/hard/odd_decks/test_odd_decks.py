@@ -191,9 +191,13 @@ class OddDecks(unittest.TestCase):
         self.assertEqual(times, [0.0, 6000.0, 12000.0, 18000.0])
 
     def test_too_few_steps_say_how_far_they_came(self):
+        """And where the soil moves still; the base does not."""
         outcome = run(*model(), ("stage", {**GRAVITY, "steps_max": 10}))
         self.assertEqual(outcome.code, 3)
-        self.assertRegex(outcome.message, r"out-of-balance force 0\.[1-9]")
+        self.assertRegex(outcome.message, r"stage gravity, time 0\.0 s: .*out-of-balance force 0\.[1-9]")
+        self.assertRegex(outcome.message, r"largest at node \d+ at \([\d., ]+\) m; largest displacement")
+        self.assertRegex(outcome.message, r"displacement [\d.e-]+ m at node \d+ at \([\d.]+, [12]\.\d\) m;")
+        self.assertIn("state saved as snapshot last_good", outcome.message)
 
     def test_check_ends_where_water_moves_fast(self):
         """A water table far above the body: a trial of a whole step of the storm would take hours."""

@@ -109,6 +109,7 @@ case.target(
     3.0,
     "required, M3",
     low=1.9,
+    asked=True,
 )
 case.check(
     "one level, h = 0.25 m: departure of the error from (n - 3/4)/n^3, n = 4",

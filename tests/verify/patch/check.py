@@ -63,7 +63,7 @@ def let_go(name, choice, spacing, perturbation):
     error = np.abs(result.field("displacement") - given).max() / np.abs(given).max()
     spread = np.abs(strained - strained.mean(axis=0)).max() / np.abs(strained).max()
     nodes = "regular" if perturbation == 0.0 else f"perturbed by {100 * perturbation:.0f} %"
-    case.study(f"{name}, {nodes}", result, spacing, error)
+    case.study(f"{name}, {nodes}", result, spacing, error, curve=f"{name}, worst of all nodes")
     return max(error, spread)
 
 
@@ -75,7 +75,9 @@ for perturbation in (0.0, 0.15, 0.3) if case.full else (0.0, 0.3):
         pick = max if name in EXACT_LEVELS else min
         worst[name] = values if name not in worst else [pick(a, b) for a, b in zip(worst[name], values)]
 for name in EXACT_LEVELS:
-    case.target(f"{name}, motion and spread of stress", max(worst[name]), 1.0e-12, "machine precision")
+    case.target(
+        f"{name}, motion and spread of stress", max(worst[name]), 1.0e-12, "machine precision", asked=True
+    )
 for weights in ("rk", "area"):
     least = min(min(worst[name]) for name in POOR_LEVELS if weights in name)
     case.remedy(
@@ -87,8 +89,8 @@ for weights in ("rk", "area"):
 if case.full:
     case.picture(
         "Departure from a homogeneous strain (worst exact and best failing of all nodes)",
-        "spacing in m",
-        "relative motion",
+        "Node spacing [m]",
+        "Relative motion [-]",
         {name: (spacings, worst[name], "o-" if name in EXACT_LEVELS else "s--") for name in worst},
         log_x=True,
         log_y=True,

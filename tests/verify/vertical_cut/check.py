@@ -17,10 +17,15 @@ case = Case(
     pathlib.Path(__file__).resolve().parents[3] / "input" / "vertical_cut",
     id="vertical cut",
     title="the sample vertical cut falls when it is opened, and stands with more cohesion",
-    error="none",
+    error="relative energy error of the fall",
     reference="Taylor's upper bound of the height, 3.83 c/(rho g), 9 % more for 5 degrees of friction",
+    quantity="energy error",
 )
 weak = case.run("case.nml", name="weak")
+case.study("15 kPa, it falls", weak, 0.2, float(weak.summary["energy_error"]))
+for spacing in (0.4, 0.27) if case.full else ():
+    coarse = case.run("case.nml", [("spacing = 0.2", f"spacing = {spacing}")], name=f"coarse_{spacing}")
+    case.study("15 kPa, it falls", coarse, spacing, float(coarse.summary["energy_error"]))
 history = weak.history()
 shored = history["stage"] == "shored"
 case.check(

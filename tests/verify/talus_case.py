@@ -158,12 +158,13 @@ class Case:
         self.failures += not good
         print(f"{'ok  ' if good else 'FAIL'} {what}")
 
-    def study(self, series, result, spacing, error, curve=None):
+    def study(self, series, result, spacing, error, curve=None, exact=False):
         """One run of a study in mesh size: a row of the report's table, a point of its pictures.
 
         `series` names the rows ("one level, regular"), `spacing` in m, `error` relative, in the norm of
-        the case. Of the series that share a `curve`, the pictures show the worst alone. Nodes, seconds,
-        speed, smoothing and stabilisation come from the summary of the run.
+        the case. Of the series that share a `curve`, the pictures show the worst alone. What is `exact`
+        but for the tolerance of a solver has no order, and no place in the pictures. Nodes, seconds, speed,
+        smoothing and stabilisation come from the summary of the run.
         """
         summary = result.summary
         levels = int(summary["smoothing_levels"])
@@ -171,6 +172,7 @@ class Case:
             {
                 "series": series,
                 "curve": curve or series,
+                "exact": exact,
                 "nodes": int(summary["nodes"]),
                 "spacing": float(spacing),
                 "error": float(error),

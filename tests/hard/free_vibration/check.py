@@ -27,6 +27,7 @@ case = Case(
     reference="nine-node finite elements with consistent mass, tests/unit/free_square_reference.py",
     quantity="energy drift",
     order=False,
+    work=False,
 )
 
 

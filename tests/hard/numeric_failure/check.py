@@ -89,18 +89,17 @@ case.target(
     "it starts from the displacement of last_good: greatest difference [m]", float(left), 0.0, "bit by bit"
 )
 case.study("crushed, gone on from last_good", light, 0.1, left)
-history, rest = result.history(), light.history()
+middle = np.flatnonzero(np.abs(light.nodes[:, 0] - 0.5) < 1e-6)
+middle = middle[np.argsort(light.nodes[middle, 1])]
+height = light.nodes[middle, 1]
 case.picture(
-    "Crushed, and gone on from the last good state",
-    "Steps since the start of the first run [-]",
-    "Largest displacement [m]",
+    "Under the light load, in the middle of the block",
+    "Settlement [mm]",
+    "Height [m]",
     {
-        "crushed: exit code 3": (history["step"], history["maximum_displacement"], "o-"),
-        "from last_good, lighter": (
-            history["step"][-1] + rest["step"] - rest["step"][0],
-            rest["maximum_displacement"],
-            "s-",
-        ),
+        "last_good, before it": (-1e3 * light.field("displacement", "000000")[middle, 1], height, "o-"),
+        "gone on from last_good": (-1e3 * light.field("displacement")[middle, 1], height, "s-"),
+        "never crushed": (-1e3 * settled[middle, 1], height, "k--"),
     },
 )
 

@@ -131,6 +131,7 @@ case.check(
 )
 if case.full:
     values = {levels: [row[2] for row in rows] for levels, rows in meshes.items()}
+    seconds = [row[1] for rows in meshes.values() for row in rows]
     case.target(
         f"mesh-converged factor of safety, {two}, h = 0.25 m",
         values[two][-1],
@@ -154,7 +155,7 @@ if case.full:
                 levels: ([row[1] for row in rows], [row[2] for row in rows], "o-")
                 for levels, rows in meshes.items()
             },
-            "charts of Bishop & Morgenstern": ([0.3, 60.0], [CHARTS, CHARTS], "k:"),
+            "charts of Bishop & Morgenstern": ([min(seconds), max(seconds)], [CHARTS, CHARTS], "k:"),
         },
         log_x=True,
     )
@@ -223,7 +224,7 @@ unit = 20.0e3 * 10.0**2 / 1.0e8  # gamma H^2/E [m]
 case.picture(
     "Displacement of the trials of all these runs",
     "Factor that divides the strength [-]",
-    "Largest displacement over gamma H²/E [-]",
+    "Displacement E u/(gamma H²) [-]",
     {
         "stands": (stood[0], stood[1] / unit, "o"),
         "fails (where the trial ended)": (fell[0], fell[1] / unit, "x"),

@@ -63,7 +63,7 @@ def let_go(name, choice, spacing, perturbation):
     error = np.abs(result.field("displacement") - given).max() / np.abs(given).max()
     spread = np.abs(strained - strained.mean(axis=0)).max() / np.abs(strained).max()
     nodes = "regular" if perturbation == 0.0 else f"perturbed by {100 * perturbation:.0f} %"
-    case.study(f"{name}, {nodes}", result, spacing, error, curve=f"{name}, worst of all nodes")
+    case.study(f"{name}, {nodes}", result, spacing, error, curve=f"{name.split(', ell')[0]}, worst")
     return max(error, spread)
 
 

@@ -9,7 +9,8 @@ module talus_deck_types
   private
   public :: deck_t, run_t, geometry_t, nodes_t, smoothing_t, soil_t, damage_t, water_t, initial_t
   public :: boundary_t, stage_t, output_t, deck_given, deck_soil_index, deck_damage_index
-  public :: deck_water_index, deck_acts_in, deck_exceeds, deck_moves_soil, deck_held
+  public :: deck_water_index, deck_acts_in, deck_exceeds, deck_moves_soil, deck_keeps_soil
+  public :: deck_held
 
   !> Longest name of a soil, boundary or stage.
   integer, parameter, public :: name_length = 64
@@ -213,6 +214,14 @@ contains
       if (deck%stage(i)%solve == 'soil' .or. deck%stage(i)%solve == 'both') deck_moves_soil = .true.
     end do
   end function deck_moves_soil
+
+  !> True when a run keeps the state of the soil: for its own stages, or because it starts from a
+  !> saved state and is to hand on what that has.
+  pure logical function deck_keeps_soil(deck)
+    type(deck_t), intent(in) :: deck
+
+    deck_keeps_soil = deck_moves_soil(deck) .or. len(deck%initial%from_result) > 0
+  end function deck_keeps_soil
 
   !> Directions that a boundary holds or drives.
   pure function deck_held(boundary) result(held)

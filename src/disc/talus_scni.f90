@@ -17,7 +17,7 @@ module talus_scni
   use talus_rk_shape, only: rk_shape
   implicit none
   private
-  public :: scni_t, scni_build
+  public :: scni_t, scni_build, scni_transpose
 
   !> Gather lists of the first level and of its adjoint.
   !>
@@ -34,7 +34,7 @@ module talus_scni
 
 contains
 
-  !> Build both lists. Fails where too few nodes reach a segment.
+  !> Build the list of the cells. Fails where too few nodes reach a segment.
   subroutine scni_build(scni, mesh, dual, support, status)
     type(scni_t), intent(out) :: scni
     type(mesh_t), intent(in) :: mesh
@@ -51,7 +51,6 @@ contains
     call segment_shapes(dual%segment_mid, mesh%x, support, reach_offset, reach, psi, status)
     if (status_failed(status)) return
     call gather_cells(scni, dual, reach_offset, reach, psi)
-    call transpose_lists(scni)
   end subroutine scni_build
 
   !> Shape functions at the midpoints of all inner segments.
@@ -215,8 +214,8 @@ contains
     found = found + 1
   end subroutine insert
 
-  !> The lists of the adjoint: for each node the cells it reaches.
-  pure subroutine transpose_lists(scni)
+  !> The list of the adjoint, which forces need: for each node the cells it reaches.
+  pure subroutine scni_transpose(scni)
     type(scni_t), intent(inout) :: scni
     integer, allocatable :: filled(:)
     integer :: l, k, n
@@ -242,5 +241,5 @@ contains
         filled(scni%node(k)) = filled(scni%node(k)) + 1
       end do
     end do
-  end subroutine transpose_lists
+  end subroutine scni_transpose
 end module talus_scni

@@ -67,12 +67,13 @@ contains
       write (output_unit, '(2a)') 'area                      ', text_of(sum(disc%dual%area))//' m2'
       call neighbours('first-level neighbours', disc%scni%cell_offset)
       if (disc%two_levels) call neighbours('second-level neighbours', disc%two_level%offset)
+      call part('soil', session%soil_moves)
       call part('second level of smoothing', disc%two_levels)
       call part('stabilisation', disc%stabilised)
-      call part('plasticity', any(session%ground%law%plasticity /= 0))
-      call part('damage', any(session%ground%law%damage%driver /= 0))
+      call part('plasticity', session%soil_moves .and. any(session%ground%law%plasticity /= 0))
+      call part('damage', session%soil_moves .and. any(session%ground%law%damage%driver /= 0))
       call part('water', session%ground%wet)
-      call part('Bishop stress', any(session%ground%law%stress == 2))
+      call part('Bishop stress', session%soil_moves .and. any(session%ground%law%stress == 2))
     end associate
     call print_bytes(session)
   end subroutine print_model

@@ -56,7 +56,9 @@ contains
       cost%state = merge(3_i8, 2_i8, allocated(session%reduction))*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
         + bytes(work%stabilising) + bytes(work%force) + bytes(work%pull) &
-        + bytes(session%motion%pair_mass) + 32_i8*int(disc%n, i8)
+        + bytes(session%motion%pair_mass)
+      ! What every stage of the soil allocates as it begins: mobility, fastest mode and its place.
+      if (session%soil_moves) cost%step = cost%step + 48_i8*int(disc%n, i8)
       if (session%ground%wet) then
         ! Eleven numbers a face and six a node besides the matrix.
         cost%seepage = 8_i8*(11_i8*int(size(disc%dual%edge_node, 2), i8) + 6_i8*int(disc%n, i8))
@@ -79,7 +81,7 @@ contains
       + bytes(state%mass) + bytes(state%load) + bytes(state%u_load) + bytes(state%jacobian) &
       + bytes(state%content) + bytes(state%pressure) + bytes(state%saturation) &
       + bytes(state%ratio) + bytes(state%potential) + bytes(state%capacity) &
-      + bytes(state%suction) + bytes(state%water_work)
+      + bytes(state%suction) + bytes(state%give) + bytes(state%anchor) + bytes(state%water_work)
   end function state_bytes
 
   pure integer(i8) function bytes_real_1(values) result(total)

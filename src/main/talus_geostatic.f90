@@ -92,6 +92,8 @@ contains
   subroutine reset(session)
     type(session_t), intent(inout) :: session
 
+    ! A run of the water alone has nothing to count.
+    if (.not. allocated(session%state%u_zero)) return
     session%greatest_displacement = 0.0_dp
     associate (state => session%state)
       state%u_zero = state%u

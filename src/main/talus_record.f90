@@ -70,7 +70,7 @@ contains
       if (stage%kind /= 'geostatic') session%worst_water_error = &
         max(session%worst_water_error, abs(water_error))
       call collect(session, now, columns)
-      session%greatest_displacement = max(session%greatest_displacement, &
+      if (session%soil_moves) session%greatest_displacement = max(session%greatest_displacement, &
         largest_motion(session%disc%n, session%state%u, session%state%u_zero))
       call history_add(session%history, session%state%time, stage%name, &
         int(session%state%steps), columns%value(:columns%n), status)

@@ -75,7 +75,7 @@ contains
     associate (summary => session%summary, deck => session%deck, disc => session%disc)
       call summary_set(summary, 'nodes', disc%n)
       call summary_set(summary, 'mean_neighbours', real(size(disc%scni%node), dp)/real(disc%n, dp))
-      call summary_set(summary, 'smoothing_levels', deck%smoothing%levels)
+      call summary_set(summary, 'smoothing_levels', merge(2, 1, disc%two_levels))
       if (disc%two_levels) then
         call summary_set(summary, 'smoothing_length', deck%smoothing%length)
         call summary_set(summary, 'smoothing_weights', deck%smoothing%weights)
@@ -83,7 +83,9 @@ contains
         call summary_set(summary, 'mean_second_neighbours', &
                          real(size(disc%two_level%cell), dp)/real(disc%n, dp))
       end if
-      call summary_set(summary, 'stabilisation', deck%smoothing%stabilisation)
+      call summary_set(summary, 'stabilisation', &
+                       merge(deck%smoothing%stabilisation, 0.0_dp, disc%stabilised))
+      if (.not. session%soil_moves) return
       do i = 1, size(deck%soil)
         if (session%ground%law(i)%plasticity == plasticity_none) cycle
         soil = text_as_word(trim(session%ground%name(i)))

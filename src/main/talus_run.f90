@@ -4,7 +4,7 @@ module talus_run
   use talus_kinds, only: dp, i8
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
-  use talus_deck_types, only: deck_t, deck_given
+  use talus_deck_types, only: deck_t, deck_given, deck_moves_soil, deck_keeps_soil
   use talus_session, only: session_t
   use talus_setup_ground, only: setup_ground
   use talus_setup_disc, only: setup_disc
@@ -43,9 +43,8 @@ contains
     session%deck = deck
     session%declared = ''
     session%restart_name = ''
-    session%soil_moves = .false.
+    session%soil_moves = deck_moves_soil(deck)
     do i = 1, size(deck%stage)
-      session%soil_moves = session%soil_moves .or. deck%stage(i)%solve /= 'seepage'
       if (deck%stage(i)%kind == 'strength_reduction' .and. .not. allocated(session%reduction)) &
         allocate (session%reduction(0))
     end do
@@ -54,8 +53,8 @@ contains
     call setup_disc(deck, session%ground, session%disc, session%timer, status)
     if (status_failed(status)) return
     call timer_start(session%timer, 'set_up_start')
-    call state_allocate(session%state, session%disc, session%ground)
-    call work_allocate(session%work, session%disc)
+    call state_allocate(session%state, session%disc, session%ground, deck_keeps_soil(deck))
+    if (session%soil_moves) call work_allocate(session%work, session%disc)
     call place_probes(session, status)
     if (status_failed(status)) return
     ! Every stage's boundaries, so that a wrong one is told before anything is written.
@@ -164,6 +163,7 @@ contains
           call initial_water(disc, ground, pressure, session%state)
         end if
       end if
+      if (.not. session%soil_moves) return
       call weight_masses(disc, ground, session%state)
       if (initial%stress == 'k0') call initial_k0(disc, ground, initial%lateral_stress_ratio, &
                                                   session%state)

@@ -5,7 +5,7 @@ module talus_setup_disc
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
   use talus_read_file, only: file_problem
-  use talus_deck_types, only: deck_t
+  use talus_deck_types, only: deck_t, deck_keeps_soil
   use talus_deck_messages, only: messages_t, messages_start, messages_error, messages_lines, &
     messages_status
   use talus_ground, only: ground_t
@@ -16,7 +16,7 @@ module talus_setup_disc
   use talus_mesh_perturb, only: mesh_perturb
   use talus_renumber, only: mesh_renumber
   use talus_dual_cells, only: dual_build, dual_spacing
-  use talus_scni, only: scni_build
+  use talus_scni, only: scni_build, scni_transpose
   use talus_two_level, only: two_level_build, weights_symmetric, weights_rk, weights_area
   use talus_stabilise, only: stabilise_build
   use talus_disc, only: disc_t
@@ -27,7 +27,7 @@ module talus_setup_disc
 
 contains
 
-  !> Nodes, cells and operators, each timed.
+  !> Nodes, cells and operators, each timed. Water alone needs the first level only.
   subroutine setup_disc(deck, ground, disc, timer, status)
     type(deck_t), intent(in) :: deck
     type(ground_t), intent(in) :: ground
@@ -52,8 +52,9 @@ contains
     call timer_stop(timer, 'set_up_cells')
     call timer_start(timer, 'set_up_first_level')
     call scni_build(disc%scni, disc%mesh, disc%dual, support, status)
+    if (.not. status_failed(status) .and. deck_keeps_soil(deck)) call scni_transpose(disc%scni)
     call timer_stop(timer, 'set_up_first_level')
-    if (status_failed(status)) return
+    if (status_failed(status) .or. .not. deck_keeps_soil(deck)) return
     call timer_start(timer, 'set_up_smoothing')
     call build_smoothing(deck, ground, support/deck%nodes%support, disc, status)
     call timer_stop(timer, 'set_up_smoothing')

@@ -85,14 +85,37 @@ contains
     type(state_t), intent(inout) :: state
     type(restart_t), intent(inout) :: restart
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: mode(:,:)
+    logical :: soil
 
     call exchange_scalars(x, state, restart, status)
     call field_2(x, 'u', 'displacement', state%u, status)
+    call field_2(x, 'f', 'deformation gradient', state%f, status)
+    call field_1(x, 'jacobian', 'water', state%jacobian, status)
+    call field_1(x, 'content', 'water', state%content, status)
+    call field_1(x, 'pressure', 'water', state%pressure, status)
+    call field_1(x, 'saturation', 'water', state%saturation, status)
+    call field_1(x, 'ratio', 'water', state%ratio, status)
+    call field_1(x, 'potential', 'water', state%potential, status)
+    call field_1(x, 'capacity', 'water', state%capacity, status)
+    call field_1(x, 'suction', 'water', state%suction, status)
+    ! A run of the water alone keeps no soil: what starts from it starts with soil at rest.
+    soil = allocated(state%stress)
+    if (.not. x%writes) soil = h5_exists(x%file, x%group//'stress')
+    if (soil) call exchange_soil(x, state, restart, status)
+  end subroutine exchange_all
+
+  !> What only soil that moves has.
+  subroutine exchange_soil(x, state, restart, status)
+    type(exchange_t), intent(inout) :: x
+    type(state_t), intent(inout) :: state
+    type(restart_t), intent(inout) :: restart
+    type(status_t), intent(inout) :: status
+    real(dp), allocatable :: mode(:,:)
+
+    call field_1(x, 'water_work', 'work of pore water', state%water_work, status)
     call field_2(x, 'u_zero', 'displacement', state%u_zero, status)
     call field_2(x, 'v', 'velocity', state%v, status)
     call field_2(x, 'acceleration', 'velocity', state%acceleration, status)
-    call field_2(x, 'f', 'deformation gradient', state%f, status)
     call field_2(x, 'f_drive', 'smoothed gradient of damage', state%f_drive, status)
     call field_2(x, 'stress', 'stress', state%stress, status)
     call field_2(x, 'strain', 'strain that drives damage', state%strain, status)
@@ -106,21 +129,12 @@ contains
     call field_1(x, 'mass', 'velocity', state%mass, status)
     call field_2(x, 'load', 'displacement', state%load, status)
     call field_2(x, 'u_load', 'displacement', state%u_load, status)
-    call field_1(x, 'jacobian', 'water', state%jacobian, status)
-    call field_1(x, 'content', 'water', state%content, status)
-    call field_1(x, 'pressure', 'water', state%pressure, status)
-    call field_1(x, 'saturation', 'water', state%saturation, status)
-    call field_1(x, 'ratio', 'water', state%ratio, status)
-    call field_1(x, 'potential', 'water', state%potential, status)
-    call field_1(x, 'capacity', 'water', state%capacity, status)
-    call field_1(x, 'suction', 'water', state%suction, status)
-    call field_1(x, 'water_work', 'work of pore water', state%water_work, status)
     ! A run that never looked for the fastest mode of its soil has none: zeros in the file.
     mode = 0.0_dp*state%u
     if (allocated(restart%mode)) mode = restart%mode
     call field_2(x, 'mode', 'displacement', mode, status)
     if (.not. x%writes) restart%mode = mode
-  end subroutine exchange_all
+  end subroutine exchange_soil
 
   !> Numbers that are not fields.
   subroutine exchange_scalars(x, state, restart, status)

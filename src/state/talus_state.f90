@@ -26,11 +26,12 @@ module talus_state
     integer(i8) :: steps = 0_i8                 !! soil steps
     integer(i8) :: seepage_steps = 0_i8
     real(dp), allocatable :: u(:,:)             !! displacement from the reference [m], (2,n)
+    real(dp), allocatable :: f(:,:)             !! deformation gradient 11, 12, 21, 22, (4,n)
+    ! Soil; allocated when the run keeps it.
     real(dp), allocatable :: u_zero(:,:)        !! displacement that counts as none [m], (2,n)
     real(dp), allocatable :: v(:,:)             !! velocity, half a step ahead [m/s], (2,n)
     real(dp) :: ahead = 0.0_dp                  !! that half step in real time [s]; 0 in relaxation
     real(dp), allocatable :: acceleration(:,:)  !! [m/s2], (2,n)
-    real(dp), allocatable :: f(:,:)             !! deformation gradient 11, 12, 21, 22, (4,n)
     real(dp), allocatable :: f_drive(:,:)       !! smoothed, when it drives damage alone, (4,n)
     real(dp), allocatable :: stress(:,:)        !! undamaged, without pore pressure [Pa], (4,n)
     real(dp), allocatable :: strain(:,:)        !! total, where damage needs it, (4,n)
@@ -63,8 +64,22 @@ module talus_state
 contains
 
   !> Allocate what the run needs, at rest and without stress.
-  subroutine state_allocate(state, disc, ground)
+  subroutine state_allocate(state, disc, ground, soil)
     type(state_t), intent(out) :: state
+    type(disc_t), intent(in) :: disc
+    type(ground_t), intent(in) :: ground
+    logical, intent(in) :: soil !! with what only soil that moves needs
+
+    ! The shape that the water flows through.
+    allocate (state%u(2, disc%n), state%f(4, disc%n), source=0.0_dp)
+    state%f(1, :) = 1.0_dp
+    state%f(4, :) = 1.0_dp
+    if (soil) call allocate_soil(state, disc, ground)
+    if (ground%wet) call allocate_water(state, disc%n, ground, soil)
+  end subroutine state_allocate
+
+  subroutine allocate_soil(state, disc, ground)
+    type(state_t), intent(inout) :: state
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     integer :: n, i
@@ -77,11 +92,9 @@ contains
       inelastic = inelastic .or. ground%law(i)%plasticity /= 0 .or. ground%law(i)%damage%driver /= 0
       strained = strained .or. soil_needs_strain(ground%law(i))
     end do
-    allocate (state%u(2, n), state%u_zero(2, n), state%v(2, n), state%acceleration(2, n), &
-              state%f(4, n), state%stress(4, n), state%mass(n), state%load(2, n), &
-              state%u_load(2, n), state%damped(n), state%volume_work(n), source=0.0_dp)
-    state%f(1, :) = 1.0_dp
-    state%f(4, :) = 1.0_dp
+    allocate (state%u_zero(2, n), state%v(2, n), state%acceleration(2, n), state%stress(4, n), &
+              state%mass(n), state%load(2, n), state%u_load(2, n), state%damped(n), &
+              state%volume_work(n), source=0.0_dp)
     if (strained) allocate (state%strain(4, n), source=0.0_dp)
     if (strained .and. disc%damage_only) state%f_drive = state%f
     if (inelastic) allocate (state%history(merge(history_size, history_size_plastic, &
@@ -90,14 +103,22 @@ contains
       allocate (state%stabilising(n), state%stabilising_lost(n), source=0.0_dp)
       allocate (state%stiffness(n), state%stiffness_old(n), source=1.0_dp)
     end if
-    if (.not. ground%wet) return
+  end subroutine allocate_soil
+
+  subroutine allocate_water(state, n, ground, soil)
+    type(state_t), intent(inout) :: state
+    integer, intent(in) :: n
+    type(ground_t), intent(in) :: ground
+    logical, intent(in) :: soil !! that the water acts on
+    logical :: bishop
+
     allocate (state%content(n), state%pressure(n), state%saturation(n), state%ratio(n), &
               state%potential(n), state%capacity(n), state%suction(n), source=0.0_dp)
     allocate (state%jacobian(n), source=1.0_dp)
-    if (any(ground%law%stress == stress_bishop)) &
-      allocate (state%give(n), state%anchor(n), source=0.0_dp)
-    if (any(ground%law%stress == stress_bishop) .or. &
-        any(ground%law%swelling%kind /= suction_strain_none)) &
+    if (.not. soil) return
+    bishop = any(ground%law%stress == stress_bishop)
+    if (bishop) allocate (state%give(n), state%anchor(n), source=0.0_dp)
+    if (bishop .or. any(ground%law%swelling%kind /= suction_strain_none)) &
       allocate (state%water_work(n), source=0.0_dp)
-  end subroutine state_allocate
+  end subroutine allocate_water
 end module talus_state

@@ -6,7 +6,7 @@ module models
   use talus_mesh_box, only: mesh_box
   use talus_mesh_perturb, only: mesh_perturb
   use talus_dual_cells, only: dual_build, dual_spacing
-  use talus_scni, only: scni_build
+  use talus_scni, only: scni_build, scni_transpose
   use talus_two_level, only: two_level_build, weights_symmetric
   use talus_stabilise, only: stabilise_build
   use talus_disc, only: disc_t
@@ -70,6 +70,7 @@ contains
     call dual_build(disc%dual, disc%mesh, status)
     support = square%support*dual_spacing(disc%dual, disc%mesh)
     call scni_build(disc%scni, disc%mesh, disc%dual, support, status)
+    call scni_transpose(disc%scni)
     disc%two_levels = square%smoothing > 0.0_dp
     disc%damage_only = square%damage_only
     if (disc%two_levels) call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, &
@@ -145,7 +146,7 @@ contains
     model%ground = ground
     model%ground%law%own_strain = .not. square%damage_only
     call square_disc(square, ground, model%disc)
-    call state_allocate(model%state, model%disc, model%ground)
+    call state_allocate(model%state, model%disc, model%ground, .true.)
     if (ground%wet) call initial_water(model%disc, model%ground, &
       spread(0.0_dp, 1, model%disc%n), model%state)
     call weight_masses(model%disc, model%ground, model%state)

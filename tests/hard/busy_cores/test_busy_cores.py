@@ -37,9 +37,7 @@ def seconds(threads):
 
 def main():
     """Measure, print, and stop the busy loops whatever happens."""
-    loops = [
-        subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(os.cpu_count() or 2)
-    ]
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(os.cpu_count() or 2)]
     try:
         one, two = seconds(1), seconds(2)
     finally:

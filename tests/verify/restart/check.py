@@ -128,6 +128,40 @@ for deck, first, what, spacing in (
             },
         )
 
+# The water alone: between two runs with soil it hands on their soil; by itself it keeps none, and soil that
+# starts from it is at rest.
+_, parts = stages("coupled.nml")
+alone = parts[1].replace("kind = 'storm'", "kind = 'storm'  solve = 'seepage'")
+between = case.run(
+    "coupled.nml",
+    without("coupled.nml", [parts[0], *parts[2:]], [*start("coupled.nml", head), (parts[1], alone)]),
+    name="water_between",
+)
+after = case.run(
+    "coupled.nml", without("coupled.nml", parts[:2], start("coupled.nml", between)), name="after_water"
+)
+case.target(
+    "soil that a run of the water hands on: displacement",
+    np.abs(after.field("displacement", "000000") - head.field("displacement")).max(),
+    0.0,
+    BITS,
+)
+water = case.run(
+    "coupled.nml", without("coupled.nml", [parts[0], *parts[2:]], [(parts[1], alone)]), name="water_alone"
+)
+with h5py.File(water.path) as file:
+    saved = file["restart"][water.snapshots()[-1]]
+    case.check_true("a run of the water alone saves no soil", "stress" not in saved and "content" in saved)
+soil = case.run(
+    "coupled.nml", without("coupled.nml", parts[1:], start("coupled.nml", water)), name="water_first"
+)
+case.target(
+    "soil that starts from the water alone: pressure",
+    np.abs(soil.field("pore_pressure") - water.field("pore_pressure")).max(),
+    0.0,
+    BITS,
+)
+
 # Strength reduction at the end of the rain, in the same run and from the saved state.
 _, parts = stages("coupled.nml")
 rain = case.run(

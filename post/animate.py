@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 
 from talus_map import FieldMap, FieldScale, add_map_options, default_field, map_size, view_of
-from talus_style import figure_path, parser_of, run_main, time_text
+from talus_style import figure_path, parser_of, run_main, time_text, write
 
 
 def draw(result, arguments):
@@ -33,22 +33,14 @@ def draw(result, arguments):
         axes.set_title(time_text(result, snapshot))
         figure.canvas.draw()
         frames.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()))
-    plt.close(figure)
     path = arguments.output or figure_path(result.path, field, ".gif")
-    path.parent.mkdir(parents=True, exist_ok=True)
     step = round(1000 / arguments.rate)
     # One palette for all frames, from the last one, which shows most colours.
     palette = frames[-1].quantize(255, method=Image.Quantize.MEDIANCUT)
     frames = [f.quantize(palette=palette, dither=Image.Dither.NONE) for f in frames]
-    frames[0].save(
-        path,
-        save_all=True,
-        append_images=frames[1:],
-        duration=[step] * (len(frames) - 1) + [max(1500, step)],
-        loop=0,
-        optimize=False,
-    )
-    return path
+    how = {"save_all": True, "append_images": frames[1:], "loop": 0, "optimize": False}
+    how["duration"] = [step] * (len(frames) - 1) + [max(1500, step)]
+    return write(path, lambda place: frames[0].save(place, **how), figure)
 
 
 def parser():

@@ -14,7 +14,7 @@ import plot_sequence
 import plot_water_balance
 from talus_map import default_field
 from talus_result import Result, ResultError
-from talus_style import figure_path, use_style
+from talus_style import figure_path, give_up, use_style
 
 MAPS = ("displacement", "plastic_strain", "damage", "pore_pressure", "saturation")
 
@@ -88,7 +88,7 @@ def main():
     try:
         draw_all(arguments.result, arguments.output, arguments.dpi, not arguments.no_animation)
     except ResultError as error:
-        sys.exit(f"plot_all.py: {error}")
+        give_up("plot_all.py", error)
 
 
 if __name__ == "__main__":

@@ -85,7 +85,8 @@ def draw(result, arguments):
                 axes.set_title(stage)
             if row == len(rows) - 1:
                 axes.set_xlabel(label)
-        grid[row, 0].set_ylabel(f"{group} [{shown}]" if shown else group)
+        words = f"|{group}|" if log else group  # a logarithm shows sizes only
+        grid[row, 0].set_ylabel(f"{words} [{shown}]" if shown else words)
         if len(names) > 1:
             grid[row, -1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.align_ylabels()

@@ -60,6 +60,9 @@ def draw(result, arguments):
     narrow = high - low < 0.5 * np.ptp(result.nodes[:, 1])
     places = (0.5,) if narrow else (0.25, 0.5, 0.75)
     lines = arguments.x or [low + part * (high - low) for part in places]
+    for x in lines:
+        if not along_vertical(result, result.nodes, result.nodes[:, 0], x)[0].size:
+            raise ResultError(f"{result.path}: no soil at x = {x:g} m; the body spans {low:g} to {high:g} m")
     colours = plt.get_cmap("viridis_r")(np.linspace(0.1, 1.0, len(snapshots)))
     figure = plt.figure(figsize=(7.4, 1.9 + (3.3 if len(lines) == 1 else 2.3 * len(lines))))
     grid = figure.add_gridspec(len(lines) + 1, len(names), height_ratios=[0.8] + [1.0] * len(lines))

@@ -184,10 +184,20 @@ def figure_path(result_path, figure, suffix=".png"):
 
 def save(figure, path, dpi):
     """Write a figure, making its folder; returns the file's name."""
+    return write(path, lambda place: figure.savefig(place, dpi=dpi), figure)
+
+
+def write(path, how, figure):
+    """Write a file by `how(path)`, making its folder, and close the figure; returns the file's name."""
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=dpi)
-    plt.close(figure)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        how(path)
+    except (OSError, ValueError) as error:
+        # Matplotlib and Pillow tell by a ValueError which endings they know.
+        raise ResultError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from error
+    finally:
+        plt.close(figure)
     return path
 
 
@@ -199,7 +209,13 @@ def run_main(parser, draw):
         with Result(arguments.result) as result:
             print(draw(result, arguments))
     except ResultError as error:
-        sys.exit(f"{parser.prog}: {error}")
+        give_up(parser.prog, error)
+
+
+def give_up(program, error):
+    """End with the message and the exit code of wrong input, as for a wrong option."""
+    print(f"{program}: {error}", file=sys.stderr)
+    sys.exit(2)
 
 
 def finite_range(arrays):

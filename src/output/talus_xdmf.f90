@@ -23,6 +23,8 @@ module talus_xdmf
     character(:), allocatable :: grids !! finished snapshots
     character(:), allocatable :: grid  !! the snapshot being described
     character(:), allocatable :: group !! its group in the HDF5 file
+    real(dp) :: time = 0.0_dp          !! its time [s]
+    real(dp) :: last = -huge(1.0_dp)   !! time of the latest finished one [s]
     integer :: nodes = 0               !! number of nodes
   end type xdmf_t
 
@@ -58,6 +60,7 @@ contains
     real(dp), intent(in) :: time      !! [s]
 
     xdmf%group = group
+    xdmf%time = time
     xdmf%grid = '    <Grid Name="'//escaped(group)//'">'//nl//'      <Time Value="'// &
       text_of(time, 15)//'"/>'//nl//xdmf%mesh
   end subroutine xdmf_begin
@@ -88,12 +91,16 @@ contains
     end select
   end subroutine xdmf_field
 
-  !> Finish the snapshot, if one was begun, and write the whole file anew.
+  !> Finish the snapshot, if one was begun, and write the whole file anew. Viewers show one grid for
+  !> each time: the end of a stage stands for the start of the next, which has the same soil.
   subroutine xdmf_write(xdmf, status)
     type(xdmf_t), intent(inout) :: xdmf
     type(status_t), intent(inout) :: status
 
-    if (len(xdmf%grid) > 0) xdmf%grids = xdmf%grids//xdmf%grid//'    </Grid>'//nl
+    if (len(xdmf%grid) > 0 .and. xdmf%time > xdmf%last) then
+      xdmf%grids = xdmf%grids//xdmf%grid//'    </Grid>'//nl
+      xdmf%last = xdmf%time
+    end if
     xdmf%grid = ''
     call file_replace(xdmf%path, '<?xml version="1.0" encoding="utf-8"?>'//nl// &
       '<Xdmf Version="3.0">'//nl//' <Domain>'//nl// &

@@ -161,10 +161,21 @@ class Figures(unittest.TestCase):
 
     def test_mistakes_are_explained(self):
         wrong_field = self.script("plot_field.py", "--field", "damge")
-        self.assertEqual(wrong_field.returncode, 1)
+        self.assertEqual(wrong_field.returncode, 2)
         self.assertIn("no field 'damge'", wrong_field.stderr)
         self.assertIn("plastic_strain", wrong_field.stderr)
-        self.assertNotIn("Traceback", wrong_field.stderr)
+        cases = (
+            (("plot_profiles.py", "--x", "1", "99"), "no soil at x = 99 m; the body spans 0 to 4 m"),
+            (("plot_field.py", "--output", "/proc/x.png"), "cannot write /proc/x.png: No such file"),
+            (("plot_field.py", "--output", "x.docs"), "cannot write x.docs: Format 'docs' is not supported"),
+            (("animate.py", "--output", "/proc/x.gif"), "cannot write /proc/x.gif: No such file"),
+            (("plot_histories.py", "--output", "tiny.h5/x.png"), "cannot write tiny.h5/x.png: "),
+        )
+        for options, words in cases:
+            done = self.script(*options)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         with Result(self.path) as result, self.assertRaisesRegex(ResultError, "000000 to 000002"):
             result.snapshot("9")
         with self.assertRaisesRegex(ResultError, "nothing.h5"):

@@ -88,8 +88,9 @@ for words in combinations:
     inelastic = inelastic and (words[2] == "elastic" or max(parts) > 0.0)
     if words in (combinations[0], combinations[-1]):
         # Over the duration, since that of scaled masses is a thousand times as long.
-        curves[", ".join(words) + ", 0.99"] = (time / time[-1], stable)
-        curves[", ".join(words) + ", 1.10"] = (broken / time[-1], unstable)
+        start, duration = time[0], np.ptp(time)
+        curves[", ".join(words) + ", 0.99"] = ((time - start) / duration, stable)
+        curves[", ".join(words) + ", 1.10"] = ((broken - start) / duration, unstable)
 case.note(f"Soil: {len(rows)} combinations of {', '.join(PARTS)}.")
 case.check_true("plastic and breaking soil has flown or broken before it shakes", inelastic)
 worst = max(kept if code == 0 else np.inf for kept, _, code, _, _ in rows)

@@ -75,7 +75,8 @@ contains
       ! Forces at both ends of the step work, so what softening takes is 1/2 lost r_old.r_new. All
       ! residuals of a node are taken to change by one ratio, the root of that of its energies.
       whole = total + gone
-      if (whole > 0.0_dp) loss(i) = loss(i) + 0.25_dp*gone*sqrt(4.0_dp*energy(i)/whole)
+      if (abs(gone) > 0.0_dp .and. whole > 0.0_dp) &
+        loss(i) = loss(i) + 0.5_dp*gone*sqrt(energy(i))/sqrt(whole)
       energy(i) = 0.25_dp*total
     end do
     !$omp end do

@@ -40,6 +40,7 @@ class Case:
         parser.add_argument("--full", action="store_true", help="all spacings, not the quick ones only")
         parser.add_argument("--report", help="JSON file to store the measured values in")
         self.options = parser.parse_args()
+        self.options.program = str(pathlib.Path(self.options.program).resolve())  # runs are in other folders
         self.full = self.options.full
         self.folder = pathlib.Path(folder)
         self.story = {

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Threads that wait for each other briefly. libgomp lets them spin at a barrier for long, which
-!> stalls a run many times over as soon as others use the cores too. It reads the setting while the
-!> program is loaded, so the program sets it and starts once more.
+!> What libraries must be told before the program is loaded; so the program sets it and starts once
+!> more. Threads wait for each other briefly: libgomp lets them spin at a barrier for long, which
+!> stalls a run many times over as soon as others use the cores too. Memory comes in large pages where
+!> the system has them: gathers reach over many pages, and small ones take a tenth of a step.
 module talus_waiting
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_intptr_t, c_char, c_ptr, c_loc, &
     c_null_ptr, c_null_char
@@ -12,6 +13,8 @@ module talus_waiting
   !> Rounds that a thread spins before it sleeps: longer than the loops of a step differ, far
   !> shorter than a slice of the scheduler.
   character(*, c_char), parameter :: rounds = '1000'
+  !> Advice to the system to use large pages, for the allocator of glibc; others do not read it.
+  character(*, c_char), parameter :: large_pages = 'glibc.malloc.hugetlb=1'
   integer, parameter :: path_letters = 4096
   integer, parameter :: no_variable = 1 ! status of get_environment_variable
 
@@ -41,24 +44,30 @@ module talus_waiting
 
 contains
 
-  !> Start the program once more with GOMP_SPINCOUNT set, to be called before anything is read or
-  !> written. Does nothing where the user has set how threads wait, or where the system does not say
-  !> which program this is.
+  !> Start the program once more with GOMP_SPINCOUNT and GLIBC_TUNABLES set, to be called before
+  !> anything is read or written. Leaves alone what the user has set, and does nothing where the system
+  !> does not say which program this is.
   subroutine wait_briefly
     character(kind=c_char) :: path(path_letters)
-    integer(c_int) :: failed
+    integer(c_int) :: failed(2)
     integer(c_intptr_t) :: length
-    integer :: policy, spins
+    integer :: policy, spins, tunables
 
     call get_environment_variable('OMP_WAIT_POLICY', status=policy)
     call get_environment_variable('GOMP_SPINCOUNT', status=spins)
-    if (policy /= no_variable .or. spins /= no_variable) return
+    call get_environment_variable('GLIBC_TUNABLES', status=tunables)
+    if (policy /= no_variable) spins = policy
+    if (spins /= no_variable .and. tunables /= no_variable) return
     length = readlink('/proc/self/exe'//c_null_char, path, int(path_letters, c_size_t))
     if (length < 1 .or. length >= path_letters) return
     path(length+1) = c_null_char
-    ! Once it is set, the second start returns above.
-    failed = setenv('GOMP_SPINCOUNT'//c_null_char, rounds//c_null_char, 1_c_int)
-    if (failed == 0) call start_again(path)
+    ! Once both are set, the second start returns above.
+    failed = 0
+    if (spins == no_variable) &
+      failed(1) = setenv('GOMP_SPINCOUNT'//c_null_char, rounds//c_null_char, 1_c_int)
+    if (tunables == no_variable) &
+      failed(2) = setenv('GLIBC_TUNABLES'//c_null_char, large_pages//c_null_char, 1_c_int)
+    if (all(failed == 0)) call start_again(path)
   end subroutine wait_briefly
 
   !> Replace the process by another start of the program with the same words; returns where the

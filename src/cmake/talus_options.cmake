@@ -23,6 +23,12 @@ else()
 endif()
 target_compile_options(talus_options INTERFACE "$<${gnu_debug}:-ffpe-trap=${traps}>")
 
+# No fused multiply-add, which rounds once instead of twice: results are the same bits on machines
+# that have it and on those that do not.
+target_compile_options(talus_options INTERFACE "$<${gnu}:-ffp-contract=off>")
+if(TALUS_AVX2)
+  target_compile_options(talus_options INTERFACE "$<${gnu}:-mavx2>")
+endif()
 if(TALUS_NATIVE)
   target_compile_options(talus_options INTERFACE "$<${gnu}:-march=native>")
 endif()

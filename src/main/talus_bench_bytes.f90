@@ -4,11 +4,11 @@
 !> writes count once, as in STREAM. With n nodes, m1 entries of the first level, m2 of the second
 !> and p ends of pairs of the stabilisation:
 !>
-!>   strain         n (48 + 52) + 20 m1, and 72 n to divide by the area without a second level
+!>   strain         n (48 + 52) + 20 m1, and 8 n to divide by the area without a second level
 !>   second level   n 68 + 12 m2
 !>   stress         n (216 + what the physics adds)
-!>   stabilisation  n (172) + 28 p
-!>   adjoint        n 68 + 12 m2, or 72 n to divide by the area
+!>   stabilisation  n (172) + 28 p, and 8 n to divide by the area without a second level
+!>   adjoint        n 68 + 12 m2, or 72 n to divide by the area where there is no stabilisation
 !>   force          n (68 + 80) + 20 m1, and 16 n each with stabilisation and with damping
 !>   seepage        n 290 + 88 faces, an explicit sub-step; n 100 + 20 m1 more for oblique fluxes
 module talus_bench_bytes
@@ -42,12 +42,13 @@ contains
         bytes(phase_second) = 68.0_dp*n + 12.0_dp*real(size(disc%two_level%cell), dp)
         bytes(phase_adjoint) = bytes(phase_second)
       else
-        bytes(phase_strain) = bytes(phase_strain) + 72.0_dp*n
-        bytes(phase_adjoint) = 72.0_dp*n
+        bytes(phase_strain) = bytes(phase_strain) + 8.0_dp*n
+        if (disc%stabilised) bytes(phase_stabilise) = 8.0_dp*n
+        if (.not. disc%stabilised) bytes(phase_adjoint) = 72.0_dp*n
       end if
       bytes(phase_stress) = stress_bytes(session)*n
       if (disc%stabilised) then
-        bytes(phase_stabilise) = 172.0_dp*n + 28.0_dp*real(size(disc%stabilise%node), dp)
+        bytes(phase_stabilise) = bytes(phase_stabilise) + 172.0_dp*n + 28.0_dp*real(size(disc%stabilise%node), dp)
         bytes(phase_force) = bytes(phase_force) + 16.0_dp*n
       end if
       if (session%ground%wet) then

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The same soil step as talus_soil_step, with the clock read after each phase, and blocks of steps
-!> that are timed as a whole.
+!> that are timed as a whole. The models that are timed have no second level for damage alone.
 module talus_bench_step
   use talus_kinds, only: dp, i8
   use talus_disc, only: disc_t
@@ -8,7 +8,7 @@ module talus_bench_step
   use talus_state, only: state_t
   use talus_session, only: session_t
   use talus_soil_step, only: work_t, motion_t, soil_step
-  use talus_strain, only: strain_first, strain_one_level
+  use talus_strain, only: strain_first, strain_gradient
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather
@@ -39,27 +39,36 @@ contains
     began = timer_now()
     !$omp parallel default(none) shared(disc, ground, motion, state, work, failed, seconds, began)
     call motion_position(motion%step, state%v, state%u)
-    call strain_first(disc%scni, state%u, work%y)
-    if (disc%two_levels .and. .not. disc%damage_only) then
+    if (disc%two_levels) then
+      call strain_first(disc%scni, state%u, work%y)
       call mark(seconds(phase_strain), began)
       call smooth_gradient(disc%two_level, work%y, work%h)
       call mark(seconds(phase_second), began)
     else
-      call strain_one_level(disc%dual%area, work%y, work%h)
+      call strain_gradient(disc%scni, disc%dual%area, state%u, work%h)
       call mark(seconds(phase_strain), began)
     end if
     call stress_update(disc, ground, motion%coupled, work%h, work%drive, state, work%q, failed)
     call mark(seconds(phase_stress), began)
-    if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
-      state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
-    call mark(seconds(phase_stabilise), began)
-    if (disc%two_levels .and. .not. disc%damage_only) then
+    if (disc%two_levels) then
+      if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+        state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
+      call mark(seconds(phase_stabilise), began)
       call smooth_stress(disc%two_level, work%q, work%y)
+      call mark(seconds(phase_adjoint), began)
+      call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
     else
-      call force_one_level(disc%dual%area, work%q, work%y)
+      if (disc%stabilised) then
+        call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+          state%stiffness_old, work%q, work%stabilising, state%stabilising, &
+          state%stabilising_lost, disc%dual%area)
+        call mark(seconds(phase_stabilise), began)
+      else
+        call force_one_level(disc%dual%area, work%q)
+        call mark(seconds(phase_adjoint), began)
+      end if
+      call force_unbalanced(disc%scni, work%q, state%load, work%stabilising, work%force)
     end if
-    call mark(seconds(phase_adjoint), began)
-    call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
     call motion_velocity(motion%step, motion%local, motion%viscous, motion%mobility, work%force, &
                          state%v, state%acceleration, state%damped)
     call mark(seconds(phase_force), began)

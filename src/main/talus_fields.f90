@@ -7,7 +7,7 @@ module talus_fields
   use talus_state, only: state_t
   use talus_damage, only: damage_part
   use talus_soil_law, only: history_damage, stress_bishop, bishop_subtract
-  use talus_strain, only: strain_first, strain_one_level
+  use talus_strain, only: strain_first, strain_gradient
   use talus_smooth, only: smooth_gradient
   implicit none
   private
@@ -70,11 +70,11 @@ contains
     real(dp), allocatable :: y(:,:)
 
     allocate (y(4, disc%n), h(4, disc%n))
-    call strain_first(disc%scni, u, y)
     if (disc%two_levels .and. .not. disc%damage_only) then
+      call strain_first(disc%scni, u, y)
       call smooth_gradient(disc%two_level, y, h)
     else
-      call strain_one_level(disc%dual%area, y, h)
+      call strain_gradient(disc%scni, disc%dual%area, u, h)
     end if
   end function gradient
 

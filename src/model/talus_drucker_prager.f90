@@ -3,13 +3,15 @@
 !!
 !! f = sqrt(J2) + alpha I1 - k, flow potential sqrt(J2) + alpha_psi I1 (src/THEORY.md (3.4)-(3.7);
 !! Drucker & Prager 1952). The plastic strain measure is sqrt(2/3 e_p : e_p) of the deviatoric
-!! plastic strain e_p: a return that only changes the mean stress adds nothing to it.
+!! plastic strain e_p: a return that only changes the mean stress adds nothing to it. The plural
+!! procedures take a block of points, by component (talus_points), without branches.
 module talus_drucker_prager
   use talus_kinds, only: dp
+  use talus_points, only: soil_points
   implicit none
   private
-  public :: cone_t, cone_shape, cone_set, drucker_prager_return, drucker_prager_within
-  public :: secant_shear_ratio
+  public :: cone_t, cones_t, cone_shape, cone_set, cones_set, drucker_prager_return
+  public :: drucker_prager_returns, drucker_prager_excess, secant_shear_ratios
 
   !> Fits of the cone to the Mohr-Coulomb pyramid.
   integer, parameter, public :: fit_plane_strain = 1, fit_compression = 2, fit_extension = 3
@@ -22,6 +24,13 @@ module talus_drucker_prager
     real(dp) :: i1_max = 0.0_dp     !! largest I1: the apex, or the cut-off below it [Pa]
   end type cone_t
 
+  !> The cones of a block of points.
+  type :: cones_t
+    real(dp), dimension(soil_points) :: alpha, alpha_psi, k, i1_max !! see cone_t
+  end type cones_t
+
+  !> Keeps the apex of a cylinder finite.
+  real(dp), parameter :: nearly_flat = 1.0e-30_dp
   real(dp), parameter :: sqrt3 = 1.7320508075688772_dp
   real(dp), parameter :: third = 1.0_dp/3.0_dp
 
@@ -62,18 +71,28 @@ contains
     type(cone_t), intent(inout) :: cone
     real(dp), intent(in) :: k              !! sqrt(J2) at I1 = 0 [Pa], >= 0
     real(dp), intent(in) :: tension_cutoff !! largest mean stress [Pa]; negative = none
-    real(dp), parameter :: nearly_flat = 1.0e-30_dp !! keeps the apex of a cylinder finite
 
     cone%k = k
     cone%i1_max = k/max(cone%alpha, nearly_flat)
     if (tension_cutoff >= 0.0_dp) cone%i1_max = min(cone%i1_max, 3.0_dp*tension_cutoff)
   end subroutine cone_set
 
+  !> The same for a block, whose slopes and k are known.
+  pure subroutine cones_set(n, tension_cutoff, cones)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: tension_cutoff !! largest mean stress [Pa]; negative = none
+    type(cones_t), intent(inout) :: cones
+    real(dp) :: most
+    integer :: i
+
+    most = huge(1.0_dp)
+    if (tension_cutoff >= 0.0_dp) most = 3.0_dp*tension_cutoff
+    do i = 1, n
+      cones%i1_max(i) = min(cones%k(i)/max(cones%alpha(i), nearly_flat), most)
+    end do
+  end subroutine cones_set
+
   !> Return a trial stress to the cone.
-  !!
-  !! Smooth part: dlambda = f/(G + 9 K alpha alpha_psi). When that leaves I1 above i1_max, the
-  !! stress lies on the plane I1 = i1_max, with sqrt(J2) kept or reduced to the edge where cone
-  !! and plane meet. Without cut-off the edge is the apex, for any dilation angle.
   pure subroutine drucker_prager_return(cone, shear, bulk, stress, deqps, yielded)
     type(cone_t), intent(in) :: cone
     real(dp), intent(in) :: shear        !! G [Pa]
@@ -81,76 +100,99 @@ contains
     real(dp), intent(inout) :: stress(4) !! trial stress in, returned stress out [Pa], tension +
     real(dp), intent(out) :: deqps       !! increment of sqrt(2/3 e_p:e_p) [-], >= 0
     logical, intent(out) :: yielded      !! true when the trial stress was outside
-    real(dp) :: i1, mean, sx, sy, sz, j2, radius, edge, dlambda, root, root_new, ratio
+    type(cones_t) :: cones
+    real(dp) :: block(soil_points,4)
+    real(dp), dimension(soil_points) :: added, excess, root
 
-    i1 = stress(1) + stress(2) + stress(3)
-    mean = i1*third
-    sx = stress(1) - mean
-    sy = stress(2) - mean
-    sz = stress(3) - mean
-    j2 = 0.5_dp*(sx*sx + sy*sy + sz*sz) + stress(4)*stress(4)
-    radius = cone%k - cone%alpha*i1
-    deqps = 0.0_dp
-    yielded = i1 > cone%i1_max .or. radius < 0.0_dp .or. j2 > radius*radius
-    if (.not. yielded) return
-
-    root = sqrt(j2)
-    dlambda = max(0.0_dp, (root - radius)/(shear + 9.0_dp*bulk*cone%alpha*cone%alpha_psi))
-    i1 = i1 - 9.0_dp*bulk*cone%alpha_psi*dlambda
-    root_new = root - shear*dlambda
-    if (i1 > cone%i1_max) then
-      i1 = cone%i1_max
-      edge = max(0.0_dp, cone%k - cone%alpha*i1)
-      root_new = min(root, edge)
-    end if
-    root_new = max(0.0_dp, root_new)
-    ratio = 1.0_dp
-    if (root > root_new) then
-      ratio = root_new/root
-      deqps = (root - root_new)/(shear*sqrt3)
-    end if
-    mean = i1*third
-    stress(1) = ratio*sx + mean
-    stress(2) = ratio*sy + mean
-    stress(3) = ratio*sz + mean
-    stress(4) = ratio*stress(4)
+    cones%alpha(1) = cone%alpha
+    cones%alpha_psi(1) = cone%alpha_psi
+    cones%k(1) = cone%k
+    cones%i1_max(1) = cone%i1_max
+    block(1, :) = stress
+    call drucker_prager_excess(1, cones, block, excess)
+    call drucker_prager_returns(1, cones, shear, bulk, block, added, root)
+    stress = block(1, :)
+    deqps = added(1)
+    yielded = excess(1) > 0.0_dp
   end subroutine drucker_prager_return
 
-  !> Which of n trial stresses lie inside a cone: 1, or 0 where outside or not a number.
-  pure subroutine drucker_prager_within(n, cone, stress, within)
+  !> Return n trial stresses to their cones.
+  !!
+  !! Smooth part: dlambda = f/(G + 9 K alpha alpha_psi). When that leaves I1 above i1_max, the
+  !! stress lies on the plane I1 = i1_max, with sqrt(J2) kept or reduced to the edge where cone
+  !! and plane meet. Without cut-off the edge is the apex, for any dilation angle. Either way
+  !! sqrt(J2) is k - alpha I1 of the returned I1, where it is not less; so no case needs a branch,
+  !! and a stress inside stays as it is to the last bit.
+  pure subroutine drucker_prager_returns(n, cones, shear, bulk, stress, deqps, root)
     integer, intent(in) :: n
-    type(cone_t), intent(in) :: cone
-    real(dp), intent(in) :: stress(4,n) !! trial stress [Pa], tension +
-    real(dp), intent(out) :: within(n)  !! 1 or 0
+    type(cones_t), intent(in) :: cones
+    real(dp), intent(in) :: shear                    !! G [Pa]
+    real(dp), intent(in) :: bulk                     !! K [Pa]
+    real(dp), intent(inout) :: stress(soil_points,4) !! trial in, returned out [Pa], tension +
+    real(dp), intent(inout) :: deqps(soil_points)    !! increment of sqrt(2/3 e_p:e_p) [-], >= 0
+    real(dp), intent(inout) :: root(soil_points)     !! sqrt(J2) of the returned stress [Pa]
+    real(dp) :: i1, mean, sx, sy, sz, sqrt_j2, radius, dlambda, i1_new, change, shift
+    integer :: i
+
+    do i = 1, n
+      i1 = stress(i, 1) + stress(i, 2) + stress(i, 3)
+      mean = i1*third
+      sx = stress(i, 1) - mean
+      sy = stress(i, 2) - mean
+      sz = stress(i, 3) - mean
+      sqrt_j2 = sqrt(0.5_dp*(sx*sx + sy*sy + sz*sz) + stress(i, 4)*stress(i, 4))
+      radius = cones%k(i) - cones%alpha(i)*i1
+      dlambda = max(0.0_dp, sqrt_j2 - radius) &
+        /(shear + 9.0_dp*bulk*cones%alpha(i)*cones%alpha_psi(i))
+      i1_new = min(i1 - 9.0_dp*bulk*cones%alpha_psi(i)*dlambda, cones%i1_max(i))
+      root(i) = min(sqrt_j2, max(0.0_dp, cones%k(i) - cones%alpha(i)*i1_new))
+      deqps(i) = (sqrt_j2 - root(i))/(shear*sqrt3)
+      ! The deviator shrinks in proportion; one over tiny where there is none.
+      change = root(i)/max(sqrt_j2, tiny(1.0_dp)) - 1.0_dp
+      shift = (i1_new - i1)*third
+      stress(i, 1) = stress(i, 1) + (change*sx + shift)
+      stress(i, 2) = stress(i, 2) + (change*sy + shift)
+      stress(i, 3) = stress(i, 3) + (change*sz + shift)
+      stress(i, 4) = stress(i, 4) + change*stress(i, 4)
+    end do
+  end subroutine drucker_prager_returns
+
+  !> Whether n trial stresses lie outside their cones: > 0 outside, not a number where the stress is
+  !> not, else inside.
+  pure subroutine drucker_prager_excess(n, cones, stress, excess)
+    integer, intent(in) :: n
+    type(cones_t), intent(in) :: cones
+    real(dp), intent(in) :: stress(soil_points,4)  !! trial stress [Pa], tension +
+    real(dp), intent(inout) :: excess(soil_points) !! only its sign has a meaning
     real(dp) :: i1, mean, j2, radius
     integer :: i
 
     do i = 1, n
-      i1 = stress(1, i) + stress(2, i) + stress(3, i)
+      i1 = stress(i, 1) + stress(i, 2) + stress(i, 3)
       mean = i1*third
-      j2 = 0.5_dp*((stress(1, i) - mean)**2 + (stress(2, i) - mean)**2 &
-        + (stress(3, i) - mean)**2) + stress(4, i)*stress(4, i)
-      radius = cone%k - cone%alpha*i1
-      within(i) = merge(1.0_dp, 0.0_dp, i1 <= cone%i1_max)*merge(1.0_dp, 0.0_dp, radius >= 0.0_dp) &
-        *merge(1.0_dp, 0.0_dp, j2 <= radius*radius)
+      j2 = 0.5_dp*((stress(i, 1) - mean)**2 + (stress(i, 2) - mean)**2 &
+        + (stress(i, 3) - mean)**2) + stress(i, 4)*stress(i, 4)
+      radius = cones%k(i) - cones%alpha(i)*i1
+      ! max forgets what is not a number, zero times it does not.
+      excess(i) = max(i1 - cones%i1_max(i), -radius, j2 - radius*radius) + 0.0_dp*j2
     end do
-  end subroutine drucker_prager_within
+  end subroutine drucker_prager_excess
 
-  !> Secant shear stiffness of the plastic state over the elastic one,
+  !> Secant shear stiffness of the plastic state over the elastic one at n points,
   !! sqrt(J2)/(sqrt(J2) + G gamma_p), with gamma_p = sqrt(3) times the equivalent plastic strain,
   !! the plastic partner of the elastic shear strain sqrt(J2)/G. One at a point that never
   !! yielded; zero when no shear stress is left: the caller sets the floor.
-  pure real(dp) function secant_shear_ratio(shear, stress, eqps)
-    real(dp), intent(in) :: shear     !! G [Pa]
-    real(dp), intent(in) :: stress(4) !! undamaged stress [Pa]
-    real(dp), intent(in) :: eqps      !! equivalent plastic strain [-]
-    real(dp) :: mean, root
+  pure subroutine secant_shear_ratios(n, shear, root, eqps, ratio)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: shear                 !! G [Pa]
+    real(dp), intent(in) :: root(soil_points)     !! sqrt(J2) of the undamaged stress [Pa]
+    real(dp), intent(in) :: eqps(soil_points)     !! equivalent plastic strain [-]
+    real(dp), intent(inout) :: ratio(soil_points) !! [-]
+    integer :: i
 
-    secant_shear_ratio = 1.0_dp
-    if (.not. eqps > 0.0_dp) return
-    mean = (stress(1) + stress(2) + stress(3))*third
-    root = sqrt(0.5_dp*((stress(1) - mean)**2 + (stress(2) - mean)**2 + (stress(3) - mean)**2) &
-      + stress(4)**2)
-    secant_shear_ratio = root/(root + shear*sqrt3*eqps)
-  end function secant_shear_ratio
+    ! The least number makes one of nothing over nothing.
+    do i = 1, n
+      ratio(i) = (root(i) + tiny(1.0_dp))/(root(i) + tiny(1.0_dp) + shear*sqrt3*eqps(i))
+    end do
+  end subroutine secant_shear_ratios
 end module talus_drucker_prager

@@ -4,11 +4,12 @@ module talus_elastic
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_deck
   use talus_text, only: text_of
+  use talus_points, only: soil_points
   use talus_objective, only: piola_stress
   implicit none
   private
   public :: elastic_t, elastic_prepare, elastic_add, elastic_adds, elastic_energy, elastic_energies
-  public :: elastic_bilinear
+  public :: elastic_bilinear, elastic_bilinears
   public :: elastic_piola_tangent
 
   type :: elastic_t
@@ -58,18 +59,23 @@ contains
     stress(4) = stress(4) + two_g*dstrain(4)
   end subroutine elastic_add
 
-  !> The same at n points, from the stress before to the stress after.
+  !> The same at n points of a block, from the stress before to the stress after.
   pure subroutine elastic_adds(elastic, n, dstrain, before, stress)
     type(elastic_t), intent(in) :: elastic
     integer, intent(in) :: n
-    real(dp), intent(in) :: dstrain(4,n) !! strain increment [-], tension +
-    real(dp), intent(in) :: before(4,n)  !! stress [Pa], tension +
-    real(dp), intent(out) :: stress(4,n) !! before + C : dstrain [Pa]
+    real(dp), intent(in) :: dstrain(soil_points,4)   !! strain increment [-], tension +
+    real(dp), intent(in) :: before(soil_points,4)    !! stress [Pa], tension +
+    real(dp), intent(inout) :: stress(soil_points,4) !! before + C : dstrain [Pa]
+    real(dp) :: volumetric, two_g
     integer :: i
 
+    two_g = 2.0_dp*elastic%shear
     do i = 1, n
-      stress(:, i) = before(:, i)
-      call elastic_add(elastic, dstrain(:, i), stress(:, i))
+      volumetric = elastic%lame*(dstrain(i, 1) + dstrain(i, 2) + dstrain(i, 3))
+      stress(i, 1) = before(i, 1) + volumetric + two_g*dstrain(i, 1)
+      stress(i, 2) = before(i, 2) + volumetric + two_g*dstrain(i, 2)
+      stress(i, 3) = before(i, 3) + volumetric + two_g*dstrain(i, 3)
+      stress(i, 4) = before(i, 4) + two_g*dstrain(i, 4)
     end do
   end subroutine elastic_adds
 
@@ -96,18 +102,43 @@ contains
     elastic_energy = 0.5_dp*elastic_bilinear(elastic, stress, stress)
   end function elastic_energy
 
-  !> The same at n points.
+  !> The same at n points of a block.
   pure subroutine elastic_energies(elastic, n, stress, energy)
     type(elastic_t), intent(in) :: elastic
     integer, intent(in) :: n
-    real(dp), intent(in) :: stress(4,n) !! stress [Pa]
-    real(dp), intent(out) :: energy(n)  !! [J/m3]
+    real(dp), intent(in) :: stress(soil_points,4) !! stress [Pa]
+    real(dp), intent(inout) :: energy(n)          !! [J/m3]
+    real(dp), parameter :: third = 1.0_dp/3.0_dp
+    real(dp) :: mean, deviatoric
     integer :: i
 
     do i = 1, n
-      energy(i) = elastic_energy(elastic, stress(:, i))
+      mean = (stress(i, 1) + stress(i, 2) + stress(i, 3))*third
+      deviatoric = (stress(i, 1) - mean)**2 + (stress(i, 2) - mean)**2 &
+        + (stress(i, 3) - mean)**2 + 2.0_dp*stress(i, 4)*stress(i, 4)
+      energy(i) = 0.5_dp*(mean*mean*elastic%over_bulk + deviatoric*elastic%over_shear)
     end do
   end subroutine elastic_energies
+
+  !> Elastic energy density a : C^-1 : b of two stresses at n points of a block, without the half.
+  pure subroutine elastic_bilinears(elastic, n, a, b, energy)
+    type(elastic_t), intent(in) :: elastic
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a(soil_points,4) !! stress [Pa]
+    real(dp), intent(in) :: b(soil_points,4) !! stress [Pa]
+    real(dp), intent(inout) :: energy(n)     !! [J/m3]
+    real(dp), parameter :: third = 1.0_dp/3.0_dp
+    real(dp) :: mean_a, mean_b, deviatoric
+    integer :: i
+
+    do i = 1, n
+      mean_a = (a(i, 1) + a(i, 2) + a(i, 3))*third
+      mean_b = (b(i, 1) + b(i, 2) + b(i, 3))*third
+      deviatoric = (a(i, 1) - mean_a)*(b(i, 1) - mean_b) + (a(i, 2) - mean_a)*(b(i, 2) - mean_b) &
+        + (a(i, 3) - mean_a)*(b(i, 3) - mean_b) + 2.0_dp*a(i, 4)*b(i, 4)
+      energy(i) = mean_a*mean_b*elastic%over_bulk + deviatoric*elastic%over_shear
+    end do
+  end subroutine elastic_bilinears
 
   !> Elastic tangent for the stable step: dP = J dsigma F^-T of a change dF at F, with
   !! dsigma = C : sym(dF F^-1) + K_w tr(dF F^-1) 1. The geometric terms, of the order of

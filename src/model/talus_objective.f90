@@ -4,9 +4,11 @@
 !! Deformation gradients are stored (11,12,21,22) with F_ij = dx_i/dX_j; symmetric tensors are
 !! stored (xx,yy,zz,xy) with tensorial shear. A rotation is stored as (cos, sin) of
 !! Q = [cos -sin; sin cos]. Equations: src/THEORY.md (3.1), (3.2); Hughes & Winget (1980).
-!! The plural procedures take many points: loops without branches, which compilers vectorise.
+!! The plural procedures take a block of points, by component (talus_points): loops without branches,
+!! which compilers vectorise.
 module talus_objective
   use talus_kinds, only: dp
+  use talus_points, only: soil_points
   implicit none
   private
   public :: objective_increment, objective_increments, tensor_rotate, tensors_rotate
@@ -26,44 +28,51 @@ contains
     real(dp), intent(out) :: rotation(2)  !! cosine and sine of the rotation of the step [-]
     real(dp), intent(out) :: det_new      !! det F_new [-]
     integer, intent(out) :: ierr          !! 0, or 1 when det F_mid or det F_new is not positive
-    real(dp) :: det_mid(1), det_old(1), det(1)
+    real(dp), dimension(soil_points,4) :: before, after, change
+    real(dp) :: turn(soil_points,2)
+    real(dp), dimension(soil_points) :: det_mid, det_old, det
 
-    call objective_increments(1, f_old, f_new, dstrain, rotation, det_mid, det_old, det)
+    before(1, :) = f_old
+    after(1, :) = f_new
+    call objective_increments(1, before, after, change, turn, det_mid, det_old, det)
+    dstrain = change(1, :)
+    rotation = turn(1, :)
     det_new = det(1)
     ierr = merge(0, 1, det_mid(1) > 0.0_dp)
   end subroutine objective_increment
 
-  !> The same at n points. Where det F_mid or det F_new is not positive, det_mid is returned as
+  !> The same at n points of a block. Where det F_mid or det F_new is not positive, det_mid is returned as
   !! zero, with no strain and no rotation.
   pure subroutine objective_increments(n, f_old, f_new, dstrain, rotation, det_mid, det_old, &
     det_new)
     integer, intent(in) :: n
-    real(dp), intent(in) :: f_old(4,n)      !! deformation gradient before the step [-]
-    real(dp), intent(in) :: f_new(4,n)      !! deformation gradient after the step [-]
-    real(dp), intent(out) :: dstrain(4,n)   !! strain increment at the end [-], tension +, zz = 0
-    real(dp), intent(out) :: rotation(2,n)  !! cosine and sine of the rotation of the step [-]
-    real(dp), intent(out) :: det_mid(n)     !! det F_mid [-], or 0
-    real(dp), intent(out) :: det_old(n)     !! det F_old [-]
-    real(dp), intent(out) :: det_new(n)     !! det F_new [-]
+    real(dp), intent(in) :: f_old(soil_points,4)      !! deformation gradient before the step [-]
+    real(dp), intent(in) :: f_new(soil_points,4)      !! deformation gradient after the step [-]
+    real(dp), intent(inout) :: dstrain(soil_points,4) !! strain increment at the end [-], zz = 0
+    real(dp), intent(inout) :: rotation(soil_points,2) !! cosine and sine of the rotation [-]
+    real(dp), intent(inout) :: det_mid(soil_points)   !! det F_mid [-], or 0
+    real(dp), intent(inout) :: det_old(soil_points)   !! det F_old [-]
+    real(dp), intent(inout) :: det_new(soil_points)   !! det F_new [-]
     real(dp) :: m11, m12, m21, m22, d11, d12, d21, d22, inv, xx, yy, xy, h12, h21, a, a2, turned
     integer :: i
 
+    ! A loop of its own: compilers would make a branch of a zero that they see divided.
     do i = 1, n
-      det_old(i) = f_old(1, i)*f_old(4, i) - f_old(2, i)*f_old(3, i)
-      det_new(i) = f_new(1, i)*f_new(4, i) - f_new(2, i)*f_new(3, i)
-      det_mid(i) = 0.25_dp*((f_old(1, i) + f_new(1, i))*(f_old(4, i) + f_new(4, i)) &
-        - (f_old(2, i) + f_new(2, i))*(f_old(3, i) + f_new(3, i)))
+      det_old(i) = f_old(i, 1)*f_old(i, 4) - f_old(i, 2)*f_old(i, 3)
+      det_new(i) = f_new(i, 1)*f_new(i, 4) - f_new(i, 2)*f_new(i, 3)
+      det_mid(i) = 0.25_dp*((f_old(i, 1) + f_new(i, 1))*(f_old(i, 4) + f_new(i, 4)) &
+        - (f_old(i, 2) + f_new(i, 2))*(f_old(i, 3) + f_new(i, 3)))
       det_mid(i) = merge(det_mid(i), 0.0_dp, min(det_mid(i), det_new(i)) > 0.0_dp)
     end do
     do i = 1, n
-      m11 = 0.5_dp*(f_old(1, i) + f_new(1, i))
-      m12 = 0.5_dp*(f_old(2, i) + f_new(2, i))
-      m21 = 0.5_dp*(f_old(3, i) + f_new(3, i))
-      m22 = 0.5_dp*(f_old(4, i) + f_new(4, i))
-      d11 = f_new(1, i) - f_old(1, i)
-      d12 = f_new(2, i) - f_old(2, i)
-      d21 = f_new(3, i) - f_old(3, i)
-      d22 = f_new(4, i) - f_old(4, i)
+      m11 = 0.5_dp*(f_old(i, 1) + f_new(i, 1))
+      m12 = 0.5_dp*(f_old(i, 2) + f_new(i, 2))
+      m21 = 0.5_dp*(f_old(i, 3) + f_new(i, 3))
+      m22 = 0.5_dp*(f_old(i, 4) + f_new(i, 4))
+      d11 = f_new(i, 1) - f_old(i, 1)
+      d12 = f_new(i, 2) - f_old(i, 2)
+      d21 = f_new(i, 3) - f_old(i, 3)
+      d22 = f_new(i, 4) - f_old(i, 4)
       ! One over det_mid, or 0 where that is 0, without a branch.
       inv = det_mid(i)/max(det_mid(i)*det_mid(i), tiny(1.0_dp))
       h12 = (d12*m11 - d11*m12)*inv
@@ -76,12 +85,12 @@ contains
       inv = 1.0_dp/(1.0_dp + a2)
       ! Half the rotation has the cosine sqrt(inv) and the sine a sqrt(inv): only squares enter.
       turned = inv*(a2*(yy - xx) - 2.0_dp*a*xy)
-      dstrain(1, i) = xx + turned
-      dstrain(2, i) = yy - turned
-      dstrain(3, i) = 0.0_dp
-      dstrain(4, i) = xy + inv*(a*(xx - yy) - 2.0_dp*a2*xy)
-      rotation(1, i) = (1.0_dp - a2)*inv
-      rotation(2, i) = 2.0_dp*a*inv
+      dstrain(i, 1) = xx + turned
+      dstrain(i, 2) = yy - turned
+      dstrain(i, 3) = 0.0_dp
+      dstrain(i, 4) = xy + inv*(a*(xx - yy) - 2.0_dp*a2*xy)
+      rotation(i, 1) = (1.0_dp - a2)*inv
+      rotation(i, 2) = 2.0_dp*a*inv
     end do
   end subroutine objective_increments
 
@@ -102,15 +111,24 @@ contains
     t(4) = cs*(xx - yy) + (cc - ss)*xy
   end subroutine tensor_rotate
 
-  !> The same at n points.
+  !> The same at n points of a block.
   pure subroutine tensors_rotate(n, rotation, t)
     integer, intent(in) :: n
-    real(dp), intent(in) :: rotation(2,n) !! cosine and sine [-]
-    real(dp), intent(inout) :: t(4,n)     !! symmetric tensors, xx, yy, zz, xy
+    real(dp), intent(in) :: rotation(soil_points,2) !! cosine and sine [-]
+    real(dp), intent(inout) :: t(soil_points,4)     !! symmetric tensors, xx, yy, zz, xy
+    real(dp) :: cc, ss, cs, xx, yy, xy
     integer :: i
 
     do i = 1, n
-      call tensor_rotate(rotation(:, i), t(:, i))
+      cc = rotation(i, 1)*rotation(i, 1)
+      ss = rotation(i, 2)*rotation(i, 2)
+      cs = rotation(i, 1)*rotation(i, 2)
+      xx = t(i, 1)
+      yy = t(i, 2)
+      xy = t(i, 4)
+      t(i, 1) = cc*xx - 2.0_dp*cs*xy + ss*yy
+      t(i, 2) = ss*xx + 2.0_dp*cs*xy + cc*yy
+      t(i, 4) = cs*(xx - yy) + (cc - ss)*xy
     end do
   end subroutine tensors_rotate
 
@@ -141,19 +159,20 @@ contains
     piola(4) = stress(2)*f(1) - stress(4)*f(3)
   end subroutine piola_stress
 
-  !> Area times first Piola-Kirchhoff stress at n points.
+  !> Area times first Piola-Kirchhoff stress at n points of a block, by node.
   pure subroutine piola_stresses(n, area, f, stress, piola)
     integer, intent(in) :: n
-    real(dp), intent(in) :: area(n)     !! area of the point's cell [m2]
-    real(dp), intent(in) :: f(4,n)      !! deformation gradient [-]
-    real(dp), intent(in) :: stress(4,n) !! Cauchy stress [Pa], tension +
-    real(dp), intent(out) :: piola(4,n) !! area times first Piola stress [N m/m]
-    real(dp) :: p(4)
+    real(dp), intent(in) :: area(n)               !! area of the point's cell [m2]
+    real(dp), intent(in) :: f(soil_points,4)      !! deformation gradient [-]
+    real(dp), intent(in) :: stress(soil_points,4) !! Cauchy stress [Pa], tension +
+    real(dp), intent(inout) :: piola(4,n)         !! area times first Piola stress [N m/m]
     integer :: i
 
     do i = 1, n
-      call piola_stress(f(:, i), stress(:, i), p)
-      piola(:, i) = area(i)*p
+      piola(1, i) = area(i)*(stress(i, 1)*f(i, 4) - stress(i, 4)*f(i, 2))
+      piola(2, i) = area(i)*(stress(i, 4)*f(i, 1) - stress(i, 1)*f(i, 3))
+      piola(3, i) = area(i)*(stress(i, 4)*f(i, 4) - stress(i, 2)*f(i, 2))
+      piola(4, i) = area(i)*(stress(i, 2)*f(i, 1) - stress(i, 4)*f(i, 3))
     end do
   end subroutine piola_stresses
 end module talus_objective

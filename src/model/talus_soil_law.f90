@@ -4,17 +4,19 @@
 !! Order of a step (src/THEORY.md section 3): turn the undamaged stress, add the elastic stress
 !! of the strain less the suction strain, return to the cone, raise damage, degrade. The cone is
 !! that of the plastic strain before the step, so the return satisfies it exactly.
+!! Points come in blocks, by component (talus_points): what all of them do are loops that compilers
+!! vectorise; damage is left to the points that have any.
 !! In `net` the stress carried is net stress and equals total stress above the water table; in
 !! `bishop` it is effective stress, and bishop_subtract gives the total.
 module talus_soil_law
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use talus_kinds, only: dp
+  use talus_points, only: soil_points
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_objective, only: objective_increments, tensors_rotate
   use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energy, &
-    elastic_energies, elastic_bilinear
-  use talus_drucker_prager, only: cone_t, drucker_prager_return, secant_shear_ratio
-  use talus_strength, only: strength_t, strength_prepare, strength_cone, strength_within, &
+    elastic_energies, elastic_bilinears
+  use talus_drucker_prager, only: cones_t, drucker_prager_returns, secant_shear_ratios
+  use talus_strength, only: strength_t, strength_prepare, strength_cones, strength_excess, &
     suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
@@ -23,7 +25,7 @@ module talus_soil_law
     split_deviatoric
   implicit none
   private
-  public :: soil_law_t, soil_law_prepare, soil_update, soil_trial, soil_stays_elastic, soil_return
+  public :: soil_law_t, soil_law_prepare, soil_update, soil_trial, soil_excess, soil_returns
   public :: soil_stored_energy, soil_stored_energies
   public :: bishop_factor, bishop_subtract, soil_needs_strain
 
@@ -39,9 +41,6 @@ module talus_soil_law
   integer, parameter, public :: history_damage_work = 5  !! [J/m3]
   !> All of them, and those that soil without damage needs.
   integer, parameter, public :: history_size = 5, history_size_plastic = 2
-
-  !> Most points that are updated at once: their fields stay in the first cache.
-  integer, parameter, public :: soil_points = 64
 
   !> Outcome of soil_update.
   integer, parameter, public :: soil_ok = 0, soil_inverted = 1, soil_not_finite = 2
@@ -104,174 +103,204 @@ contains
     real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
     real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
     integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
-    real(dp) :: before(4,1), det_mid(1), det_old(1), det_new(1), suctions(2)
+    real(dp), dimension(soil_points,4) :: old, new, before, total, trial, damaged
+    real(dp) :: record(soil_points,history_size)
+    real(dp), dimension(soil_points) :: suction, suction_was, wet, det_mid, volume, det_new, left
+    integer :: code(soil_points)
 
-    suctions = [suction_old, suction_new]
-    before(:, 1) = effective
-    call soil_trial(law, 1, f_old, f_new, suctions(1:1), suctions(2:2), before, strain, effective, &
-                    det_mid, det_old, det_new)
-    call soil_return(law, det_mid(1), 0.5_dp*(det_old(1) + det_new(1)), suction_new, saturation, &
-                     before(:, 1), strain, effective, history, stress, stiffness_scale, ierr)
+    old(1, :) = f_old
+    new(1, :) = f_new
+    before(1, :) = effective
+    total(1, :) = strain
+    record(1, :) = history
+    suction_was(1) = suction_old
+    suction(1) = suction_new
+    wet(1) = saturation
+    call soil_trial(law, 1, old, new, suction_was, suction, before, total, trial, det_mid, volume, &
+                    det_new)
+    volume(1) = 0.5_dp*(volume(1) + det_new(1))
+    call soil_returns(law, 1, det_mid, volume, suction, wet, before, total, trial, record, damaged, &
+                      left, code)
+    effective = trial(1, :)
+    strain = total(1, :)
+    history = record(1, :)
+    stress = damaged(1, :)
+    stiffness_scale = left(1)
+    ierr = code(1)
   end subroutine soil_update
 
   !> First half of the update, for n points of one soil: turn the stress, add the elastic stress of
   !! the strain less the suction strain.
   pure subroutine soil_trial(law, n, f_old, f_new, suction_old, suction_new, before, strain, &
     trial, det_mid, det_old, det_new)
-    type(soil_law_t), intent(in) :: law      !! prepared
-    integer, intent(in) :: n                 !! soil_points at most
-    real(dp), intent(in) :: f_old(4,n)       !! deformation gradient before [-]
-    real(dp), intent(in) :: f_new(4,n)       !! deformation gradient after [-]
-    real(dp), intent(in) :: suction_old(n)   !! s = -p_w before [Pa]
-    real(dp), intent(in) :: suction_new(n)   !! s after [Pa]
-    real(dp), intent(inout) :: before(4,n)   !! undamaged stress before in, turned out [Pa]
-    real(dp), intent(inout) :: strain(4,*)   !! total strain [-], (4,n); not used without damage
-    real(dp), intent(out) :: trial(4,n)      !! elastic trial stress [Pa]
-    real(dp), intent(out) :: det_mid(n)      !! J of the middle of the step [-]; 0 where inverted
-    real(dp), intent(out) :: det_old(n)      !! J before [-]
-    real(dp), intent(out) :: det_new(n)      !! J after [-]
-    real(dp) :: dstrain(4,soil_points), rotation(2,soil_points)
+    type(soil_law_t), intent(in) :: law              !! prepared
+    integer, intent(in) :: n
+    real(dp), intent(in) :: f_old(soil_points,4)     !! deformation gradient before [-]
+    real(dp), intent(in) :: f_new(soil_points,4)     !! deformation gradient after [-]
+    real(dp), intent(in) :: suction_old(soil_points) !! s = -p_w before [Pa]
+    real(dp), intent(in) :: suction_new(soil_points) !! s after [Pa]
+    real(dp), intent(inout) :: before(soil_points,4) !! undamaged stress before, turned out [Pa]
+    real(dp), intent(inout) :: strain(soil_points,4) !! total strain [-]; not used without damage
+    real(dp), intent(inout) :: trial(soil_points,4)  !! elastic trial stress [Pa]
+    real(dp), intent(inout) :: det_mid(soil_points)  !! J of the middle [-]; 0 where inverted
+    real(dp), intent(inout) :: det_old(soil_points)  !! J before [-]
+    real(dp), intent(inout) :: det_new(soil_points)  !! J after [-]
+    real(dp) :: dstrain(soil_points,4), rotation(soil_points,2)
     integer :: i
 
     call objective_increments(n, f_old, f_new, dstrain, rotation, det_mid, det_old, det_new)
     call tensors_rotate(n, rotation, before)
     if (law%own_strain .and. soil_needs_strain(law)) then
       call tensors_rotate(n, rotation, strain)
-      strain(:, :n) = strain(:, :n) + dstrain(:, :n)
+      strain(:n, :) = strain(:n, :) + dstrain(:n, :)
     end if
     if (law%swelling%kind /= suction_strain_none) then
       do i = 1, n
-        if (det_mid(i) > 0.0_dp) dstrain(1:3, i) = dstrain(1:3, i) &
+        if (det_mid(i) > 0.0_dp) dstrain(i, 1:3) = dstrain(i, 1:3) &
           - suction_strain_increment(law%swelling, suction_old(i), suction_new(i), det_new(i))
       end do
     end if
     call elastic_adds(law%elastic, n, dstrain, before, trial)
   end subroutine soil_trial
 
-  !> Which of n points soil_return would leave as they are: 1, or 0 for the others. These are
-  !! points that have never yielded nor been damaged, and whose trial stress is inside the cone.
-  pure subroutine soil_stays_elastic(law, n, history, suction, saturation, det_mid, trial, stays)
+  !> Whether soil_returns would change n points that have never yielded nor been damaged: > 0 or not
+  !> a number where it would.
+  pure subroutine soil_excess(law, n, suction, saturation, trial, excess)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: n
-    real(dp), intent(in) :: history(history_size,n) !! see history_*
-    real(dp), intent(in) :: suction(n)         !! s = -p_w after [Pa]
-    real(dp), intent(in) :: saturation(n)      !! effective saturation after [-]
-    real(dp), intent(in) :: det_mid(n)         !! of soil_trial
-    real(dp), intent(in) :: trial(4,n)         !! elastic trial stress [Pa]
-    real(dp), intent(out) :: stays(n)          !! 1 or 0
+    real(dp), intent(in) :: suction(soil_points)    !! s = -p_w after [Pa]
+    real(dp), intent(in) :: saturation(soil_points) !! effective saturation after [-]
+    real(dp), intent(in) :: trial(soil_points,4)    !! elastic trial stress [Pa]
+    real(dp), intent(inout) :: excess(soil_points)  !! only its sign has a meaning
     integer :: i
 
-    stays = 0.0_dp
-    if (soil_needs_strain(law)) return
-    if (law%plasticity == plasticity_drucker_prager) then
-      call strength_within(law%strength, n, suction, saturation, trial, stays)
+    if (soil_needs_strain(law)) then
+      excess(:n) = 1.0_dp
+    else if (law%plasticity == plasticity_drucker_prager) then
+      call strength_excess(law%strength, n, suction, saturation, trial, excess)
     else
       do i = 1, n
-        stays(i) = merge(1.0_dp, 0.0_dp, &
-          abs(trial(1, i) + trial(2, i) + trial(3, i) + trial(4, i)) <= huge(1.0_dp))
+        excess(i) = 0.0_dp*(trial(i, 1) + trial(i, 2) + trial(i, 3) + trial(i, 4))
       end do
     end if
-    do i = 1, n
-      stays(i) = stays(i)*merge(1.0_dp, 0.0_dp, det_mid(i) > 0.0_dp) &
-        *merge(0.0_dp, 1.0_dp, max(history(history_eqps, i), history(history_damage, i)) > 0.0_dp)
-    end do
-  end subroutine soil_stays_elastic
+  end subroutine soil_excess
 
-  !> Second half of the update, at one point: return to the cone, raise damage, degrade.
-  pure subroutine soil_return(law, det_mid, volume, suction, saturation, before, strain, &
+  !> Second half of the update, at n points: return to the cone, raise damage, degrade.
+  pure subroutine soil_returns(law, n, det_mid, volume, suction, saturation, before, strain, &
     effective, history, stress, stiffness_scale, ierr)
-    type(soil_law_t), intent(in) :: law            !! prepared
-    real(dp), intent(in) :: det_mid                !! of soil_trial
-    real(dp), intent(in) :: volume                 !! mean of J before and after [-]
-    real(dp), intent(in) :: suction                !! s = -p_w after [Pa]
-    real(dp), intent(in) :: saturation             !! effective saturation after [-]
-    real(dp), intent(in) :: before(4)              !! undamaged stress before, turned [Pa]
-    real(dp), intent(in) :: strain(4)              !! total strain after [-]
-    real(dp), intent(inout) :: effective(4)        !! trial stress in, undamaged stress out [Pa]
-    real(dp), intent(inout) :: history(history_size) !! see history_*
-    real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
-    real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
-    integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
-    logical :: yielded
+    type(soil_law_t), intent(in) :: law              !! prepared
+    integer, intent(in) :: n
+    real(dp), intent(in) :: det_mid(soil_points)     !! of soil_trial
+    real(dp), intent(in) :: volume(soil_points)      !! mean of J before and after [-]
+    real(dp), intent(in) :: suction(soil_points)     !! s = -p_w after [Pa]
+    real(dp), intent(in) :: saturation(soil_points)  !! effective saturation after [-]
+    real(dp), intent(in) :: before(soil_points,4)    !! undamaged stress before, turned [Pa]
+    real(dp), intent(in) :: strain(soil_points,4)    !! total strain after [-]
+    real(dp), intent(inout) :: effective(soil_points,4) !! trial in, undamaged stress out [Pa]
+    real(dp), intent(inout) :: history(soil_points,history_size) !! see history_*
+    real(dp), intent(inout) :: stress(soil_points,4) !! damaged, without pore pressure [Pa]
+    real(dp), intent(inout) :: stiffness_scale(soil_points) !! stiffness left over elastic [-]
+    integer, intent(inout) :: ierr(soil_points)      !! one of soil_ok, soil_inverted, ...
+    real(dp) :: trial(soil_points,4), old(soil_points,4)
+    integer :: i
 
-    stiffness_scale = 1.0_dp
-    stress = effective
-    ierr = soil_inverted
-    if (.not. det_mid > 0.0_dp) return
-    ierr = soil_ok
-    yielded = .false.
-    if (law%plasticity == plasticity_drucker_prager) then
-      call return_to_cone(law, suction, saturation, effective, history, yielded)
-      stiffness_scale = secant_shear_ratio(law%elastic%shear, effective, history(history_eqps))
+    stiffness_scale(:n) = 1.0_dp
+    trial(:n, :) = effective(:n, :)
+    if (law%plasticity == plasticity_drucker_prager) call return_to_cone(law, n, suction, &
+      saturation, effective, history, stiffness_scale)
+    stress(:n, :) = effective(:n, :)
+    old(:n, :) = before(:n, :)
+    if (law%damage%driver /= driver_none) then
+      do i = 1, n
+        if (.not. det_mid(i) > 0.0_dp) cycle
+        call wear(law, volume(i), before(i, :), strain(i, :), effective(i, :), history(i, :), &
+                  old(i, :), stress(i, :))
+        stiffness_scale(i) = stiffness_scale(i)*(1.0_dp - history(i, history_damage))
+      end do
     end if
-    if (yielded .or. law%damage%driver /= driver_none) then
-      call dissipate(law, volume, yielded, before, strain, effective, history, stress)
-      stiffness_scale = stiffness_scale*(1.0_dp - history(history_damage))
-    end if
-    if (.not. ieee_is_finite(stress(1) + stress(2) + stress(3) + stress(4))) &
-      ierr = soil_not_finite
-  end subroutine soil_return
+    if (law%plasticity == plasticity_drucker_prager) call plastic_work(law, n, volume, trial, &
+      effective, old, stress, history)
+    do i = 1, n
+      ierr(i) = soil_ok
+      if (.not. abs(stress(i, 1) + stress(i, 2) + stress(i, 3) + stress(i, 4)) <= huge(1.0_dp)) &
+        ierr(i) = soil_not_finite
+      if (.not. det_mid(i) > 0.0_dp) ierr(i) = soil_inverted
+    end do
+  end subroutine soil_returns
 
-  !> Plastic return of a trial stress, with the plastic strain it adds.
+  !> Plastic return of trial stresses, with the plastic strain it adds and the shear stiffness left.
   !!
   !! With the split `deviatoric`, damage leaves the full mean pressure but only (1 - D) of the
   !! shear stress that dilation is paid from. Dilation therefore fades with (1 - D) there: at
   !! full dilation a damaged point would create energy.
-  pure subroutine return_to_cone(law, suction, saturation, effective, history, yielded)
+  pure subroutine return_to_cone(law, n, suction, saturation, effective, history, left)
     type(soil_law_t), intent(in) :: law
-    real(dp), intent(in) :: suction                  !! s = -p_w [Pa]
-    real(dp), intent(in) :: saturation               !! effective saturation [-]
-    real(dp), intent(inout) :: effective(4)          !! trial in, returned out [Pa]
-    real(dp), intent(inout) :: history(history_size)
-    logical, intent(out) :: yielded
-    type(cone_t) :: cone
-    real(dp) :: deqps
+    integer, intent(in) :: n
+    real(dp), intent(in) :: suction(soil_points)        !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation(soil_points)     !! effective saturation [-]
+    real(dp), intent(inout) :: effective(soil_points,4) !! trial in, returned out [Pa]
+    real(dp), intent(inout) :: history(soil_points,history_size)
+    real(dp), intent(inout) :: left(soil_points)        !! secant over elastic shear stiffness [-]
+    type(cones_t) :: cones
+    real(dp), dimension(soil_points) :: deqps, root
 
-    call strength_cone(law%strength, history(history_eqps), suction, saturation, cone)
-    if (law%damage%split == split_deviatoric) &
-      cone%alpha_psi = cone%alpha_psi*(1.0_dp - history(history_damage))
-    call drucker_prager_return(cone, law%elastic%shear, law%elastic%bulk, effective, deqps, yielded)
-    history(history_eqps) = history(history_eqps) + deqps
+    call strength_cones(law%strength, n, history(:, history_eqps), suction, saturation, cones)
+    if (law%damage%split == split_deviatoric .and. law%damage%driver /= driver_none) &
+      cones%alpha_psi(:n) = cones%alpha_psi(:n)*(1.0_dp - history(:n, history_damage))
+    call drucker_prager_returns(n, cones, law%elastic%shear, law%elastic%bulk, effective, deqps, &
+                                root)
+    history(:n, history_eqps) = history(:n, history_eqps) + deqps(:n)
+    call secant_shear_ratios(n, law%elastic%shear, root, history(:, history_eqps), left)
   end subroutine return_to_cone
 
-  !> Damage of the step, the stress it leaves, and the works dissipated. Both works follow from
+  !> Damage of a point, the stress it leaves, and the work it dissipates. Both works follow from
   !! the trapezoidal work 1/2 (sigma_old + sigma_new) : d(eps), which they close exactly:
   !! work = change of the stored energy + plastic work + damage work.
-  pure subroutine dissipate(law, volume, yielded, before, strain, effective, history, stress)
+  pure subroutine wear(law, volume, before, strain, effective, history, old, stress)
     type(soil_law_t), intent(in) :: law
     real(dp), intent(in) :: volume       !! J in the middle of the step [-]
-    logical, intent(in) :: yielded
     real(dp), intent(in) :: before(4)    !! undamaged stress before, turned [Pa]
     real(dp), intent(in) :: strain(4)    !! total strain [-]
     real(dp), intent(in) :: effective(4) !! undamaged stress after [Pa]
     real(dp), intent(inout) :: history(history_size)
-    real(dp), intent(inout) :: stress(4) !! trial stress in, damaged stress out [Pa]
-    real(dp) :: trial(4), part(4), old(4), d_old
+    real(dp), intent(inout) :: old(4)    !! damaged stress before, turned, where damaged [Pa]
+    real(dp), intent(inout) :: stress(4) !! damaged stress after, where damaged [Pa]
+    real(dp) :: part(4), d_old
 
-    trial = stress
-    stress = effective
-    old = before
-    if (law%damage%driver /= driver_none) then
-      d_old = history(history_damage)
-      call damage_advance(law%damage, strain, history(history_eqps), history(history_kappa), &
-        history(history_damage))
-      if (history(history_damage) > 0.0_dp) then
-        call damage_part(law%damage%split, effective, part)
-        stress = effective - history(history_damage)*part
-        call damage_part(law%damage%split, before, part)
-        old = before - d_old*part
-        history(history_damage_work) = history(history_damage_work) + volume &
-          *damage_dissipation(law%damage, law%elastic, before, d_old, effective, &
-          history(history_damage))
-      end if
-    end if
-    if (yielded) then
-      trial = trial - effective
-      old = 0.5_dp*(old + stress)
-      history(history_plastic_work) = history(history_plastic_work) &
-        + volume*elastic_bilinear(law%elastic, trial, old)
-    end if
-  end subroutine dissipate
+    d_old = history(history_damage)
+    call damage_advance(law%damage, strain, history(history_eqps), history(history_kappa), &
+      history(history_damage))
+    if (.not. history(history_damage) > 0.0_dp) return
+    call damage_part(law%damage%split, effective, part)
+    stress = effective - history(history_damage)*part
+    call damage_part(law%damage%split, before, part)
+    old = before - d_old*part
+    history(history_damage_work) = history(history_damage_work) + volume &
+      *damage_dissipation(law%damage, law%elastic, before, d_old, effective, &
+      history(history_damage))
+  end subroutine wear
+
+  !> Add the plastic work: none where the return left the trial stress as it was.
+  pure subroutine plastic_work(law, n, volume, trial, effective, old, stress, history)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: n
+    real(dp), intent(in) :: volume(soil_points)         !! J in the middle of the step [-]
+    real(dp), intent(inout) :: trial(soil_points,4)     !! trial stress [Pa]; lost
+    real(dp), intent(in) :: effective(soil_points,4)    !! returned stress [Pa]
+    real(dp), intent(inout) :: old(soil_points,4)       !! damaged stress before [Pa]; lost
+    real(dp), intent(in) :: stress(soil_points,4)       !! damaged stress after [Pa]
+    real(dp), intent(inout) :: history(soil_points,history_size)
+    real(dp) :: work(soil_points)
+    integer :: i
+
+    trial(:n, :) = trial(:n, :) - effective(:n, :)
+    old(:n, :) = 0.5_dp*(old(:n, :) + stress(:n, :))
+    call elastic_bilinears(law%elastic, n, trial, old, work)
+    do i = 1, n
+      history(i, history_plastic_work) = history(i, history_plastic_work) &
+        + volume(i)*work(i)
+    end do
+  end subroutine plastic_work
 
   !> Energy stored elastically per current volume [J/m3], reduced by damage.
   pure real(dp) function soil_stored_energy(law, effective, d)
@@ -286,19 +315,19 @@ contains
     end if
   end function soil_stored_energy
 
-  !> The same at n points.
-  pure subroutine soil_stored_energies(law, n, history, effective, energy)
+  !> The same at n points of a block.
+  pure subroutine soil_stored_energies(law, n, d, effective, energy)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: n
-    real(dp), intent(in) :: history(history_size,n) !! see history_*
-    real(dp), intent(in) :: effective(4,n)   !! undamaged stress [Pa]
-    real(dp), intent(out) :: energy(n)       !! [J/m3]
+    real(dp), intent(in) :: d(soil_points)           !! damage [-]; not used by soil without
+    real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress [Pa]
+    real(dp), intent(inout) :: energy(n)             !! [J/m3]
     integer :: i
 
     call elastic_energies(law%elastic, n, effective, energy)
+    if (law%damage%driver == driver_none) return
     do i = 1, n
-      if (history(history_damage, i) > 0.0_dp) energy(i) = &
-        soil_stored_energy(law, effective(:, i), history(history_damage, i))
+      if (d(i) > 0.0_dp) energy(i) = damage_stored(law%damage, law%elastic, effective(i, :), d(i))
     end do
   end subroutine soil_stored_energies
 

@@ -8,10 +8,11 @@ module talus_strength
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
-  use talus_drucker_prager, only: cone_t, cone_shape, cone_set, drucker_prager_within
+  use talus_points, only: soil_points
+  use talus_drucker_prager, only: cone_t, cones_t, cone_shape, cones_set, drucker_prager_excess
   implicit none
   private
-  public :: strength_t, strength_prepare, strength_cone, strength_within, strength_at
+  public :: strength_t, strength_prepare, strength_cone, strength_cones, strength_excess, strength_at
 
   integer, parameter, public :: softening_none = 0, softening_linear = 1, &
     softening_exponential = 2, softening_table = 3
@@ -165,68 +166,91 @@ contains
     real(dp), intent(in) :: suction    !! s = -p_w [Pa]; no part when negative
     real(dp), intent(in) :: saturation !! effective saturation [-], 0 to 1
     type(cone_t), intent(out) :: cone
+    type(cones_t) :: cones
+    real(dp), dimension(soil_points) :: strain, pull, wet
 
-    if (eqps <= 0.0_dp .or. eqps < strength%peak_until) then
-      call shape_cone(strength, strength%peak, suction, saturation, cone)
-    else if (eqps >= strength%constant_from) then
-      call shape_cone(strength, strength%residual, suction, saturation, cone)
-    else
-      call moving_cone(strength, eqps, suction, saturation, cone)
-    end if
+    strain(1) = eqps
+    pull(1) = suction
+    wet(1) = saturation
+    call strength_cones(strength, 1, strain, pull, wet, cones)
+    cone = cone_t(cones%alpha(1), cones%alpha_psi(1), cones%k(1), cones%i1_max(1))
   end subroutine strength_cone
 
-  pure subroutine moving_cone(strength, eqps, suction, saturation, cone)
-    type(strength_t), intent(in) :: strength
-    real(dp), intent(in) :: eqps, suction, saturation
-    type(cone_t), intent(out) :: cone
-    type(shape_t) :: shape
-
-    call shape_at(strength, eqps, shape)
-    call shape_cone(strength, shape, suction, saturation, cone)
-  end subroutine moving_cone
-
-  !> Add the part of suction to the cohesion: min(s tan(phi_b) or S_e s tan(phi'), dc_max).
-  pure subroutine shape_cone(strength, shape, suction, saturation, cone)
-    type(strength_t), intent(in) :: strength
-    type(shape_t), intent(in) :: shape
-    real(dp), intent(in) :: suction, saturation
-    type(cone_t), intent(out) :: cone
-    real(dp) :: added
-
-    added = 0.0_dp
-    if (strength%suction == suction_strength_phi_b) then
-      added = max(0.0_dp, suction)*strength%tan_phi_b
-    else if (strength%suction == suction_strength_vanapalli) then
-      added = max(0.0_dp, suction)*saturation*shape%tan_phi
-    end if
-    added = min(added, strength%added_most)
-    cone%alpha = shape%alpha
-    cone%alpha_psi = shape%alpha_psi
-    call cone_set(cone, (shape%cohesion + added)*shape%k_over_c, strength%tension_cutoff)
-  end subroutine shape_cone
-
-  !> Which of n trial stresses lie inside the cone of soil that has not yielded yet: 1, or 0 where
-  !! outside or not a number.
-  pure subroutine strength_within(strength, n, suction, saturation, stress, within)
+  !> The same at n points of a block.
+  pure subroutine strength_cones(strength, n, eqps, suction, saturation, cones)
     type(strength_t), intent(in) :: strength
     integer, intent(in) :: n
-    real(dp), intent(in) :: suction(n)    !! s = -p_w [Pa]
-    real(dp), intent(in) :: saturation(n) !! effective saturation [-]
-    real(dp), intent(in) :: stress(4,n)   !! trial stress [Pa], tension +
-    real(dp), intent(out) :: within(n)    !! 1 or 0
-    type(cone_t) :: cone
+    real(dp), intent(in) :: eqps(soil_points)       !! equivalent plastic strain [-]
+    real(dp), intent(in) :: suction(soil_points)    !! s = -p_w [Pa]; no part when negative
+    real(dp), intent(in) :: saturation(soil_points) !! effective saturation [-], 0 to 1
+    type(cones_t), intent(inout) :: cones
+    type(shape_t) :: shape
+    type(cones_t) :: one
     integer :: i
 
-    call shape_cone(strength, strength%peak, 0.0_dp, 0.0_dp, cone)
-    if (strength%suction == suction_strength_none) then
-      call drucker_prager_within(n, cone, stress, within)
-    else
-      do i = 1, n
-        call shape_cone(strength, strength%peak, suction(i), saturation(i), cone)
-        call drucker_prager_within(1, cone, stress(:, i), within(i:i))
-      end do
+    if (maxval(eqps(:n)) < strength%peak_until) then
+      call shape_cones(strength, strength%peak, n, suction, saturation, cones)
+      return
     end if
-  end subroutine strength_within
+    do i = 1, n
+      if (eqps(i) <= 0.0_dp .or. eqps(i) < strength%peak_until) then
+        shape = strength%peak
+      else if (eqps(i) >= strength%constant_from) then
+        shape = strength%residual
+      else
+        call shape_at(strength, eqps(i), shape)
+      end if
+      call shape_cones(strength, shape, 1, suction(i:i), saturation(i:i), one)
+      cones%alpha(i) = one%alpha(1)
+      cones%alpha_psi(i) = one%alpha_psi(1)
+      cones%k(i) = one%k(1)
+      cones%i1_max(i) = one%i1_max(1)
+    end do
+  end subroutine strength_cones
+
+  !> Cones of one shape, with the part of suction in the cohesion: min(s tan(phi_b) or
+  !> S_e s tan(phi'), dc_max).
+  pure subroutine shape_cones(strength, shape, n, suction, saturation, cones)
+    type(strength_t), intent(in) :: strength
+    type(shape_t), intent(in) :: shape
+    integer, intent(in) :: n
+    real(dp), intent(in) :: suction(n), saturation(n)
+    type(cones_t), intent(inout) :: cones
+    integer :: i
+
+    cones%alpha(:n) = shape%alpha
+    cones%alpha_psi(:n) = shape%alpha_psi
+    select case (strength%suction)
+    case (suction_strength_phi_b)
+      do i = 1, n
+        cones%k(i) = (shape%cohesion + min(max(0.0_dp, suction(i))*strength%tan_phi_b, &
+                                           strength%added_most))*shape%k_over_c
+      end do
+    case (suction_strength_vanapalli)
+      do i = 1, n
+        cones%k(i) = (shape%cohesion + min(max(0.0_dp, suction(i))*saturation(i)*shape%tan_phi, &
+                                           strength%added_most))*shape%k_over_c
+      end do
+    case default
+      cones%k(:n) = shape%cohesion*shape%k_over_c
+    end select
+    call cones_set(n, strength%tension_cutoff, cones)
+  end subroutine shape_cones
+
+  !> Whether n trial stresses lie outside the cone of soil that has not yielded yet: > 0 or not a
+  !> number where they do.
+  pure subroutine strength_excess(strength, n, suction, saturation, stress, excess)
+    type(strength_t), intent(in) :: strength
+    integer, intent(in) :: n
+    real(dp), intent(in) :: suction(soil_points)    !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation(soil_points) !! effective saturation [-]
+    real(dp), intent(in) :: stress(soil_points,4)   !! trial stress [Pa], tension +
+    real(dp), intent(inout) :: excess(soil_points)  !! only its sign has a meaning
+    type(cones_t) :: cones
+
+    call shape_cones(strength, strength%peak, n, suction, saturation, cones)
+    call drucker_prager_excess(n, cones, stress, excess)
+  end subroutine strength_excess
 
   pure subroutine shape_at(strength, eqps, shape)
     type(strength_t), intent(in) :: strength

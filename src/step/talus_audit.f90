@@ -6,6 +6,7 @@
 !> the discretisation, its adjoint, the laws and the time step together.
 module talus_audit
   use talus_kinds, only: dp
+  use talus_points, only: soil_points, points_take
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
@@ -148,17 +149,19 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n
     real(dp), intent(out) :: energy(n)
+    real(dp) :: stress(soil_points,4)
     integer :: i, start, run
 
     start = first
     do while (start < first + n)
       run = 1
-      do while (start + run < first + n)
+      do while (run < soil_points .and. start + run < first + n)
         if (disc%soil(start+run) /= disc%soil(start)) exit
         run = run + 1
       end do
-      call elastic_energies(ground%law(disc%soil(start))%elastic, run, &
-                            state%stress(:, start:start+run-1), energy(start-first+1:))
+      call points_take(run, state%stress(:, start:start+run-1), stress)
+      call elastic_energies(ground%law(disc%soil(start))%elastic, run, stress, &
+                            energy(start-first+1:))
       start = start + run
     end do
     if (.not. damages(state)) return

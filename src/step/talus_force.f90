@@ -12,16 +12,16 @@ module talus_force
 
 contains
 
-  !> First Piola stress of the first level alone.
-  subroutine force_one_level(area, q, r)
+  !> First Piola stress of the first level alone, without stabilisation, which would divide.
+  subroutine force_one_level(area, q)
     real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
-    real(dp), contiguous, intent(in) :: q(:,:)    !! area times Piola stress [N m/m], (4,n)
-    real(dp), contiguous, intent(inout) :: r(:,:) !! Piola stress [Pa], (4,n)
+    real(dp), contiguous, intent(inout) :: q(:,:) !! area times Piola stress in, Piola stress out
+                                                  !! [Pa], (4,n)
     integer :: l
 
     !$omp do schedule(static)
     do l = 1, size(area)
-      r(:, l) = q(:, l)/area(l)
+      q(:, l) = q(:, l)/area(l)
     end do
     !$omp end do
   end subroutine force_one_level
@@ -77,14 +77,23 @@ contains
     real(dp), intent(in) :: step                  !! time step [s]
     real(dp), contiguous, intent(in) :: v(:,:)    !! velocity half a step back [m/s], (2,n)
     real(dp), contiguous, intent(inout) :: u(:,:) !! displacement [m], (2,n)
+
+    call advance(size(u), step, v, u)
+  end subroutine motion_position
+
+  !> Both components of all nodes in one row.
+  subroutine advance(n, step, v, u)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: step, v(*)
+    real(dp), intent(inout) :: u(*)
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(u, 2)
-      u(:, i) = u(:, i) + step*v(:, i)
+    do i = 1, n
+      u(i) = u(i) + step*v(i)
     end do
     !$omp end do
-  end subroutine motion_position
+  end subroutine advance
 
   !> Velocities at the next half step. Local damping takes a fraction of the out-of-balance force
   !> against the velocity (Cundall 1987); viscous damping is proportional to momentum, at the mean
@@ -100,9 +109,11 @@ contains
     real(dp), contiguous, intent(inout) :: damped(:)         !! energy damped so far [J/m], (n)
     real(dp) :: f, next, middle, over_step, kept, gain
     integer :: i, j
-    logical :: damps
 
-    damps = local > 0.0_dp .or. viscous > 0.0_dp
+    if (.not. (local > 0.0_dp .or. viscous > 0.0_dp)) then
+      call accelerate(size(v), step, mobility, force, v, acceleration)
+      return
+    end if
     over_step = 1.0_dp/step
     gain = 1.0_dp/(1.0_dp + 0.5_dp*step*viscous)
     kept = (1.0_dp - 0.5_dp*step*viscous)*gain
@@ -118,15 +129,32 @@ contains
         if (local > 0.0_dp .and. abs(v(j, i)) > 0.0_dp) f = f - sign(local*abs(f), v(j, i))
         next = kept*v(j, i) + gain*f*mobility(j, i)
         acceleration(j, i) = (next - v(j, i))*over_step
-        if (damps) then
-          middle = 0.5_dp*(v(j, i) + next)
-          damped(i) = damped(i) + step*middle*(force(j, i) - f + viscous*middle/mobility(j, i))
-        end if
+        middle = 0.5_dp*(v(j, i) + next)
+        damped(i) = damped(i) + step*middle*(force(j, i) - f + viscous*middle/mobility(j, i))
         v(j, i) = next
       end do
     end do
     !$omp end do
   end subroutine motion_velocity
+
+  !> The same without damping, both components of all nodes in one row. Where motion is held the
+  !> velocity stays, and the difference is zero.
+  subroutine accelerate(n, step, mobility, force, v, acceleration)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: step, mobility(*), force(*)
+    real(dp), intent(inout) :: v(*), acceleration(*)
+    real(dp) :: next, over_step
+    integer :: i
+
+    over_step = 1.0_dp/step
+    !$omp do schedule(static)
+    do i = 1, n
+      next = v(i) + step*force(i)*mobility(i)
+      acceleration(i) = (next - v(i))*over_step
+      v(i) = next
+    end do
+    !$omp end do
+  end subroutine accelerate
 
   !> Out-of-balance force less local damping, as in motion_velocity, for the consistent mass: a node
   !> is also moved by the force on its neighbours.

@@ -136,7 +136,7 @@ contains
     call scale_length(direction, tiny(1.0_dp), regular)
   end subroutine direction_unit
 
-  !> Take from a direction its parts along one or two others of unit length, orthogonal to each other,
+  !> Take from a direction its parts along one or two others of unit length, which are orthogonal,
   !> and give what is left unit length. `regular` is false where next to nothing is left: that is
   !> round-off, and what is left of K d is not the stiffness of what is left of d. So there are
   !> never more directions than free displacements.

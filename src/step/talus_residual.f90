@@ -12,7 +12,8 @@ contains
 
   !> Add the pairs' part to area times Piola stress, and give their nodal force. The stiffness of a
   !> pair follows the softer of its nodes, so that a shear band is not bridged from its sides.
-  subroutine residual_gather(stabilise, u, h, scale, before, q, force, energy, loss)
+  !> `energy` comes in as that of one step ago. With `area`, the sum is divided by it.
+  subroutine residual_gather(stabilise, u, h, scale, before, q, force, energy, loss, area)
     type(stabilise_t), intent(in) :: stabilise
     real(dp), contiguous, intent(in) :: u(:,:)      !! displacement [m], (2,n)
     real(dp), contiguous, intent(in) :: h(:,:)      !! displacement gradient, (4,n)
@@ -22,17 +23,25 @@ contains
     real(dp), contiguous, intent(inout) :: force(:,:) !! force on the nodes [N/m], (2,n)
     real(dp), contiguous, intent(inout) :: energy(:) !! half the energy of a node's pairs [J/m], (n)
     real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
+    real(dp), contiguous, intent(in), optional :: area(:) !! cell areas, where there is one level [m2]
 
-    call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
-                stabilise%stiffness, u, h, scale, before, q, force, energy, loss)
+    if (present(area)) then
+      call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
+                  stabilise%stiffness, u, h, scale, before, .true., area, q, force, energy, loss)
+    else
+      call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
+                  stabilise%stiffness, u, h, scale, before, .false., scale, q, force, energy, loss)
+    end if
   end subroutine residual_gather
 
   !> The gather on plain arrays.
-  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, q, force, energy, loss)
+  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, divided, area, q, force, &
+    energy, loss)
     integer, intent(in) :: n, offset(*), node(*)
-    real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*)
+    real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*), area(*)
+    logical, intent(in) :: divided !! by the area, which else is not read
     real(dp), intent(inout) :: q(4,*), force(2,*), energy(*), loss(*)
-    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone
+    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone, whole
     integer :: i, j, k
 
     !$omp do schedule(static)
@@ -71,8 +80,13 @@ contains
       q(2, i) = q(2, i) - p12
       q(3, i) = q(3, i) - p21
       q(4, i) = q(4, i) - p22
+      if (divided) q(:, i) = q(:, i)/area(i)
+      ! Forces at both ends of the step work, so what softening takes is 1/2 lost r_old.r_new. All
+      ! residuals of a node are taken to change by one ratio, the root of that of its energies.
+      whole = total + gone
+      if (abs(gone) > 0.0_dp .and. whole > 0.0_dp) &
+        loss(i) = loss(i) + 0.5_dp*gone*sqrt(energy(i))/sqrt(whole)
       energy(i) = 0.25_dp*total
-      loss(i) = loss(i) + 0.25_dp*gone
     end do
     !$omp end do
   end subroutine gather

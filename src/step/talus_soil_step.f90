@@ -2,7 +2,7 @@
 !> One explicit step of the soil (src/THEORY.md (5.1)), the file to read first:
 !>
 !>   u_n+1   = u_n + dt v_n+1/2                          motion_position
-!>   F_n+1   = 1 + G u_n+1, then W F                     strain_first, smooth_gradient
+!>   F_n+1   = 1 + G u_n+1, then W F                     strain_gradient or strain_first, smooth_gradient
 !>   sigma   = law(F_n, F_n+1, suction), P = J sigma F^-T  stress_update
 !>   r       = affine residual, its force and its P      residual_gather
 !>   R       = W^T P                                     smooth_stress
@@ -13,7 +13,7 @@ module talus_soil_step
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_strain, only: strain_first, strain_one_level
+  use talus_strain, only: strain_first, strain_one_level, strain_gradient
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather
@@ -159,21 +159,32 @@ contains
     type(work_t), intent(inout) :: work
     integer, intent(inout) :: failed
 
-    call strain_first(disc%scni, state%u, work%y)
-    if (disc%two_levels .and. disc%damage_only) call smooth_gradient(disc%two_level, work%y, work%drive)
-    if (disc%two_levels .and. .not. disc%damage_only) then
-      call smooth_gradient(disc%two_level, work%y, work%h)
+    if (.not. disc%two_levels) then
+      call strain_gradient(disc%scni, disc%dual%area, state%u, work%h)
     else
-      call strain_one_level(disc%dual%area, work%y, work%h)
+      call strain_first(disc%scni, state%u, work%y)
+      if (disc%damage_only) then
+        call smooth_gradient(disc%two_level, work%y, work%drive)
+        call strain_one_level(disc%dual%area, work%y, work%h)
+      else
+        call smooth_gradient(disc%two_level, work%y, work%h)
+      end if
     end if
     call stress_update(disc, ground, coupled, work%h, work%drive, state, work%q, failed)
-    if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
-      state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
     if (disc%two_levels .and. .not. disc%damage_only) then
+      if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+        state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
       call smooth_stress(disc%two_level, work%q, work%y)
+      call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
     else
-      call force_one_level(disc%dual%area, work%q, work%y)
+      if (disc%stabilised) then
+        call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+          state%stiffness_old, work%q, work%stabilising, state%stabilising, &
+          state%stabilising_lost, disc%dual%area)
+      else
+        call force_one_level(disc%dual%area, work%q)
+      end if
+      call force_unbalanced(disc%scni, work%q, state%load, work%stabilising, work%force)
     end if
-    call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
   end subroutine forces
 end module talus_soil_step

@@ -7,7 +7,7 @@ module talus_strain
   use talus_scni, only: scni_t
   implicit none
   private
-  public :: strain_first, strain_one_level
+  public :: strain_first, strain_one_level, strain_gradient
 
 contains
 
@@ -17,14 +17,25 @@ contains
     real(dp), contiguous, intent(in) :: u(:,:)    !! displacement [m], (2,n)
     real(dp), contiguous, intent(inout) :: y(:,:) !! area times gradient [m2], (4,n)
 
-    call gather(size(y, 2), scni%cell_offset, scni%node, scni%b, u, y)
+    call gather(size(y, 2), scni%cell_offset, scni%node, scni%b, u, .false., u, y)
   end subroutine strain_first
+
+  !> Gradient of the first level alone: strain_first and strain_one_level in one pass.
+  subroutine strain_gradient(scni, area, u, h)
+    type(scni_t), intent(in) :: scni
+    real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
+    real(dp), contiguous, intent(in) :: u(:,:)    !! displacement [m], (2,n)
+    real(dp), contiguous, intent(inout) :: h(:,:) !! displacement gradient F - 1, (4,n)
+
+    call gather(size(h, 2), scni%cell_offset, scni%node, scni%b, u, .true., area, h)
+  end subroutine strain_gradient
 
   !> The gather on plain arrays. Rows of two, and entries taken four at a time, keep the processor
   !> at sums instead of addresses.
-  subroutine gather(n, offset, node, b, u, y)
+  subroutine gather(n, offset, node, b, u, divided, area, y)
     integer, intent(in) :: n, offset(*), node(*)
-    real(dp), intent(in) :: b(2,*), u(2,*)
+    real(dp), intent(in) :: b(2,*), u(2,*), area(*)
+    logical, intent(in) :: divided !! by the area, which else is not read
     real(dp), intent(inout) :: y(4,*)
     real(dp) :: row_1(2), row_2(2)
     integer :: l, k, i
@@ -39,13 +50,17 @@ contains
         row_1 = row_1 + u(1, i)*b(:, k)
         row_2 = row_2 + u(2, i)*b(:, k)
       end do
+      if (divided) then
+        row_1 = row_1/area(l)
+        row_2 = row_2/area(l)
+      end if
       y(1:2, l) = row_1
       y(3:4, l) = row_2
     end do
     !$omp end do
   end subroutine gather
 
-  !> Gradient of the first level alone.
+  !> Gradient of the first level, where its product with the area serves something else too.
   subroutine strain_one_level(area, y, h)
     real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
     real(dp), contiguous, intent(in) :: y(:,:)    !! area times gradient [m2], (4,n)

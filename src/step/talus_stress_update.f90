@@ -2,18 +2,19 @@
 !> The constitutive update over all nodes: from the new deformation gradient to area times first
 !> Piola stress (src/THEORY.md sections 3 and 5.1).
 !>
-!> Nodes are taken in blocks, of one soil each. All points of a block pass through the elastic part
-!> in loops that compilers vectorise; those that yield, or ever did, then return to the cone one by
-!> one.
+!> Nodes are taken in blocks, of one soil each, by component (talus_points). All points of a block
+!> pass through the elastic part in loops that compilers vectorise; those that yield, or ever did,
+!> are then put side by side and return to the cone in such loops too.
 module talus_stress_update
   use talus_kinds, only: dp
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
+  use talus_points, only: soil_points, points_take, points_put
   use talus_objective, only: strain_advance, piola_stresses
-  use talus_soil_law, only: soil_trial, soil_stays_elastic, soil_return, soil_stored_energies, &
-    soil_points, soil_ok, history_size, history_size_plastic, stress_bishop, stress_net, &
-    bishop_factor, bishop_subtract
+  use talus_soil_law, only: soil_law_t, soil_trial, soil_excess, soil_returns, &
+    soil_stored_energies, soil_ok, history_eqps, history_damage, history_size, &
+    stress_bishop, stress_net
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_storage, only: storage_invert
   implicit none
@@ -80,18 +81,18 @@ contains
     type(state_t), intent(inout) :: state
     real(dp), contiguous, intent(inout) :: q(:,:)
     integer, intent(inout) :: failed
-    real(dp), dimension(4,soil_points) :: f_new, strain, effective, stress
+    real(dp), dimension(soil_points,4) :: f_old, f_new, strain, before, effective, stress
     real(dp), dimension(soil_points) :: suction_old, suction, saturation, det_mid, det_old, &
-      det_new, energy, energy_new, stays, left
-    real(dp) :: history(history_size,soil_points)
-    integer :: last, i, j, ierr
+      det_new, energy, energy_new, worn, damage, excess, left
+    integer :: list(soil_points), last, listed, j
 
     last = first + n - 1
-    do j = 1, n
-      f_new(1, j) = 1.0_dp + h(1, first+j-1)
-      f_new(2:3, j) = h(2:3, first+j-1)
-      f_new(4, j) = 1.0_dp + h(4, first+j-1)
-    end do
+    call points_take(n, state%f(:, first:last), f_old)
+    call points_take(n, h(:, first:last), f_new)
+    f_new(:n, 1) = 1.0_dp + f_new(:n, 1)
+    f_new(:n, 4) = 1.0_dp + f_new(:n, 4)
+    call points_take(n, state%stress(:, first:last), before)
+    if (allocated(state%strain)) call points_take(n, state%strain(:, first:last), strain)
     if (ground%wet) then
       call water_block(ground, soil, coupled, first, n, f_new, state, suction_old, suction, &
                        saturation)
@@ -100,34 +101,36 @@ contains
       suction(:n) = 0.0_dp
       saturation(:n) = 1.0_dp
     end if
-    call history_get(state, first, n, strain, history)
+    call history_get(state, first, n, worn, damage)
 
-    call soil_trial(ground%law(soil), n, state%f(:, first:last), f_new, suction_old, suction, &
-                    state%stress(:, first:last), strain, effective, det_mid, det_old, det_new)
-    call soil_stored_energies(ground%law(soil), n, history, state%stress(:, first:last), energy)
-    call soil_stays_elastic(ground%law(soil), n, history, suction, saturation, det_mid, effective, &
-                            stays)
-    stress(:, :n) = effective(:, :n)
-    left(:n) = 1.0_dp
-    do j = 1, n
-      if (stays(j) > 0.0_dp) cycle
-      i = first + j - 1
-      call soil_return(ground%law(soil), det_mid(j), 0.5_dp*(det_old(j) + det_new(j)), suction(j), &
-                       saturation(j), state%stress(:, i), strain(:, j), effective(:, j), &
-                       history(:, j), stress(:, j), left(j), ierr)
-      if (ierr /= soil_ok) failed = max(failed, ierr*disc%n + i)
-      call history_put(state, i, history(:, j))
-    end do
-    call soil_stored_energies(ground%law(soil), n, history, effective, energy_new)
+    associate (law => ground%law(soil))
+      call soil_stored_energies(law, n, damage, before, energy)
+      call soil_trial(law, n, f_old, f_new, suction_old, suction, before, strain, effective, &
+                      det_mid, det_old, det_new)
+      call soil_excess(law, n, suction, saturation, effective, excess)
+      stress(:n, :) = effective(:n, :)
+      left(:n) = 1.0_dp
+      listed = 0
+      do j = 1, n
+        if (excess(j) <= 0.0_dp .and. worn(j) <= 0.0_dp .and. det_mid(j) > 0.0_dp) cycle
+        listed = listed + 1
+        list(listed) = j
+      end do
+      if (listed > 0) call return_block(law, first, listed, list, det_mid, det_old, det_new, &
+        suction, saturation, before, strain, effective, stress, damage, left, state, failed)
+      call soil_stored_energies(law, n, damage, effective, energy_new)
+    end associate
     if (ground%wet) call water_work_block(ground, soil, first, n, suction_old, suction, &
       saturation, det_old, det_new, effective, state, stress)
     ! A rate law for Cauchy stress works J sigma:D, which is the change of J times the stored energy
     ! less this.
-    state%volume_work(first:last) = state%volume_work(first:last) &
-      + 0.5_dp*(energy(:n) + energy_new(:n))*(det_new(:n) - det_old(:n))
-    state%stress(:, first:last) = effective(:, :n)
-    state%f(:, first:last) = f_new(:, :n)
-    if (allocated(state%strain)) state%strain(:, first:last) = strain(:, :n)
+    do j = 1, n
+      state%volume_work(first+j-1) = state%volume_work(first+j-1) &
+        + 0.5_dp*(energy(j) + energy_new(j))*(det_new(j) - det_old(j))
+    end do
+    call points_put(n, effective, state%stress(:, first:last))
+    call points_put(n, f_new, state%f(:, first:last))
+    if (allocated(state%strain)) call points_put(n, strain, state%strain(:, first:last))
     if (allocated(state%stiffness)) then
       state%stiffness_old(first:last) = state%stiffness(first:last)
       state%stiffness(first:last) = max(disc%floor, left(:n))
@@ -135,47 +138,70 @@ contains
     call piola_stresses(n, disc%dual%area(first:last), f_new, stress, q(:, first:last))
   end subroutine update_block
 
-  !> Strain and history of a block, zero where the run has none.
-  pure subroutine history_get(state, first, n, strain, history)
+  !> Whether each point of a block ever yielded or was damaged (> 0), and its damage.
+  pure subroutine history_get(state, first, n, worn, damage)
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n
-    real(dp), intent(out) :: strain(4,n), history(history_size,n)
-    integer :: kept, j
+    real(dp), intent(inout) :: worn(soil_points), damage(soil_points)
+    integer :: j
 
-    if (allocated(state%strain)) then
-      strain = state%strain(:, first:first+n-1)
-    else
-      strain = 0.0_dp
-    end if
-    kept = 0
-    if (allocated(state%history)) kept = size(state%history, 1)
-    ! Copies of fixed length take no loop.
-    if (kept == history_size) then
+    if (.not. allocated(state%history)) then
+      worn(:n) = 0.0_dp
+      damage(:n) = 0.0_dp
+    else if (size(state%history, 1) == history_size) then
       do j = 1, n
-        history(:, j) = state%history(:history_size, first + j - 1)
+        damage(j) = state%history(history_damage, first+j-1)
+        worn(j) = max(state%history(history_eqps, first+j-1), damage(j))
       end do
     else
-      history = 0.0_dp
-      if (kept == 0) return
-      do j = 1, n
-        history(:history_size_plastic, j) = state%history(:history_size_plastic, first + j - 1)
-      end do
+      worn(:n) = state%history(history_eqps, first:first+n-1)
+      damage(:n) = 0.0_dp
     end if
   end subroutine history_get
 
-  !> Keep the history of one node.
-  pure subroutine history_put(state, i, history)
+  !> The points of a block that do not stay elastic: put side by side, returned, and put back.
+  subroutine return_block(law, first, m, list, det_mid, det_old, det_new, suction, saturation, &
+    before, strain, effective, stress, damage, left, state, failed)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: first, m, list(soil_points) !! points of the block that first begins
+    real(dp), dimension(soil_points), intent(in) :: det_mid, det_old, det_new, suction, &
+      saturation
+    real(dp), dimension(soil_points,4), intent(in) :: before, strain
+    real(dp), dimension(soil_points,4), intent(inout) :: effective, stress
+    real(dp), dimension(soil_points), intent(inout) :: damage, left
     type(state_t), intent(inout) :: state
-    integer, intent(in) :: i
-    real(dp), intent(in) :: history(history_size)
+    integer, intent(inout) :: failed
+    real(dp), dimension(soil_points,4) :: turned, total, trial, total_stress
+    real(dp) :: history(soil_points,history_size)
+    real(dp), dimension(soil_points) :: middle, volume, pull, wet, scale
+    integer :: code(soil_points), i, j, kept
 
-    if (.not. allocated(state%history)) return
-    if (size(state%history, 1) == history_size) then
-      state%history(:, i) = history
-    else
-      state%history(:, i) = history(:history_size_plastic)
-    end if
-  end subroutine history_put
+    kept = 0
+    if (allocated(state%history)) kept = size(state%history, 1)
+    do i = 1, m
+      j = list(i)
+      middle(i) = det_mid(j)
+      volume(i) = 0.5_dp*(det_old(j) + det_new(j))
+      pull(i) = suction(j)
+      wet(i) = saturation(j)
+      turned(i, :) = before(j, :)
+      trial(i, :) = effective(j, :)
+      if (allocated(state%strain)) total(i, :) = strain(j, :)
+      history(i, :kept) = state%history(:, first+j-1)
+      history(i, kept+1:) = 0.0_dp
+    end do
+    call soil_returns(law, m, middle, volume, pull, wet, turned, total, trial, history, &
+                      total_stress, scale, code)
+    do i = 1, m
+      j = list(i)
+      effective(j, :) = trial(i, :)
+      stress(j, :) = total_stress(i, :)
+      left(j) = scale(i)
+      damage(j) = history(i, history_damage)
+      if (kept > 0) state%history(:, first+j-1) = history(i, :kept)
+      if (code(i) /= soil_ok) failed = max(failed, code(i)*size(state%volume_work) + first + j - 1)
+    end do
+  end subroutine return_block
 
   !> Pore pressure of a block at the new volume, and the suction and saturation its stress sees.
   pure subroutine water_block(ground, soil, coupled, first, n, f_new, state, suction_old, suction, &
@@ -183,16 +209,16 @@ contains
     type(ground_t), intent(in) :: ground
     integer, intent(in) :: soil, first, n
     logical, intent(in) :: coupled
-    real(dp), intent(in) :: f_new(4,n)
+    real(dp), intent(in) :: f_new(soil_points,4)
     type(state_t), intent(inout) :: state
-    real(dp), intent(out) :: suction_old(n), suction(n), saturation(n)
+    real(dp), dimension(soil_points), intent(inout) :: suction_old, suction, saturation
     real(dp) :: jacobian, over_range
     integer :: i, j
 
     over_range = 1.0_dp/(ground%curve(soil)%maximum - ground%curve(soil)%residual)
     do j = 1, n
       i = first + j - 1
-      jacobian = f_new(1, j)*f_new(4, j) - f_new(2, j)*f_new(3, j)
+      jacobian = f_new(j, 1)*f_new(j, 4) - f_new(j, 2)*f_new(j, 3)
       if (coupled) call storage_invert(ground%curve(soil), ground%storage(soil), &
         jacobian - 1.0_dp + ground%porosity(soil), jacobian, state%content(i), state%pressure(i), &
         state%saturation(i), state%ratio(i), state%potential(i), state%capacity(i))
@@ -201,8 +227,8 @@ contains
       suction(j) = -state%pressure(i)
       saturation(j) = (state%saturation(i) - ground%curve(soil)%residual)*over_range
     end do
-    if (ground%law(soil)%stress == stress_net) suction = max(suction, 0.0_dp)
-    state%suction(first:first+n-1) = suction
+    if (ground%law(soil)%stress == stress_net) suction(:n) = max(suction(:n), 0.0_dp)
+    state%suction(first:first+n-1) = suction(:n)
   end subroutine water_block
 
   !> Work that a block exchanges with its water, and its total stress.
@@ -210,26 +236,32 @@ contains
     det_old, det_new, effective, state, stress)
     type(ground_t), intent(in) :: ground
     integer, intent(in) :: soil, first, n
-    real(dp), intent(in) :: suction_old(n), suction(n), saturation(n) !! [Pa], [Pa], [-]
-    real(dp), intent(in) :: det_old(n), det_new(n) !! J before and after [-]
-    real(dp), intent(in) :: effective(4,n)         !! undamaged stress after [Pa]
-    type(state_t), intent(inout) :: state          !! with the stress before
-    real(dp), intent(inout) :: stress(4,n)         !! effective in, total out [Pa]
+    real(dp), dimension(soil_points), intent(in) :: suction_old, suction !! [Pa]
+    real(dp), intent(in) :: saturation(soil_points)                      !! effective [-]
+    real(dp), dimension(soil_points), intent(in) :: det_old, det_new     !! J before and after [-]
+    real(dp), intent(in) :: effective(soil_points,4)  !! undamaged stress after [Pa]
+    type(state_t), intent(inout) :: state             !! with the stress before
+    real(dp), intent(inout) :: stress(soil_points,4)  !! effective in, total out [Pa]
+    real(dp) :: part, pull
     integer :: i, j
 
     associate (law => ground%law(soil))
       if (law%stress == stress_bishop) then
         do j = 1, n
           i = first + j - 1
-          state%water_work(i) = state%water_work(i) + bishop_factor(suction(j), saturation(j)) &
-            *0.5_dp*(suction_old(j) + suction(j))*(det_new(j) - det_old(j))
-          call bishop_subtract(suction(j), saturation(j), stress(:, j))
+          part = merge(saturation(j), 1.0_dp, suction(j) > 0.0_dp)
+          state%water_work(i) = state%water_work(i) &
+            + part*0.5_dp*(suction_old(j) + suction(j))*(det_new(j) - det_old(j))
+          pull = part*suction(j)
+          stress(j, 1) = stress(j, 1) + pull
+          stress(j, 2) = stress(j, 2) + pull
+          stress(j, 3) = stress(j, 3) + pull
         end do
       else if (law%swelling%kind /= suction_strain_none) then
         do j = 1, n
           i = first + j - 1
-          state%water_work(i) = state%water_work(i) &
-            + 0.5_dp*(sum(state%stress(1:3, i)) + sum(effective(1:3, j)))*det_new(j) &
+          state%water_work(i) = state%water_work(i) + 0.5_dp*(sum(state%stress(1:3, i)) &
+            + (effective(j, 1) + effective(j, 2) + effective(j, 3)))*det_new(j) &
             *suction_strain_increment(law%swelling, suction_old(j), suction(j), det_new(j))
         end do
       end if

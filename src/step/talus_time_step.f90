@@ -10,7 +10,7 @@ module talus_time_step
   use talus_sum, only: sum_products
   use talus_elastic, only: elastic_piola_tangent
   use talus_soil_law, only: stress_bishop, bishop_factor
-  use talus_strain, only: strain_first, strain_one_level
+  use talus_strain, only: strain_first, strain_gradient
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_residual, only: residual_gather
   use talus_inertia, only: inertia_apply
@@ -119,19 +119,22 @@ contains
     real(dp), contiguous, intent(in) :: d(:,:)       !! displacement [m], (2,n)
     type(work_t), intent(inout) :: work
     real(dp), allocatable :: energy(:), loss(:), one(:)
+    logical :: two_levels
     integer :: i
 
+    two_levels = disc%two_levels .and. .not. disc%damage_only
     allocate (energy(disc%n), loss(disc%n), one(disc%n))
+    energy = 0.0_dp
     loss = 0.0_dp
     one = 1.0_dp
     !$omp parallel default(none) shared(disc, ground, state, bulk, nothing, d, work, energy, loss) &
-    !$omp shared(one) &
+    !$omp shared(one, two_levels) &
     !$omp private(i)
-    call strain_first(disc%scni, d, work%y)
-    if (disc%two_levels .and. .not. disc%damage_only) then
+    if (two_levels) then
+      call strain_first(disc%scni, d, work%y)
       call smooth_gradient(disc%two_level, work%y, work%h)
     else
-      call strain_one_level(disc%dual%area, work%y, work%h)
+      call strain_gradient(disc%scni, disc%dual%area, d, work%h)
     end if
     !$omp do schedule(static)
     do i = 1, disc%n
@@ -140,14 +143,20 @@ contains
       work%q(:, i) = disc%dual%area(i)*work%q(:, i)
     end do
     !$omp end do
-    if (disc%stabilised) call residual_gather(disc%stabilise, d, work%h, one, one, work%q, &
-                                              work%stabilising, energy, loss)
-    if (disc%two_levels .and. .not. disc%damage_only) then
+    if (two_levels) then
+      if (disc%stabilised) call residual_gather(disc%stabilise, d, work%h, one, one, work%q, &
+        work%stabilising, energy, loss)
       call smooth_stress(disc%two_level, work%q, work%y)
+      call force_unbalanced(disc%scni, work%y, nothing, work%stabilising, work%force)
     else
-      call force_one_level(disc%dual%area, work%q, work%y)
+      if (disc%stabilised) then
+        call residual_gather(disc%stabilise, d, work%h, one, one, work%q, work%stabilising, energy, &
+          loss, disc%dual%area)
+      else
+        call force_one_level(disc%dual%area, work%q)
+      end if
+      call force_unbalanced(disc%scni, work%q, nothing, work%stabilising, work%force)
     end if
-    call force_unbalanced(disc%scni, work%y, nothing, work%stabilising, work%force)
     !$omp do schedule(static)
     do i = 1, disc%n
       work%force(:, i) = -work%force(:, i)

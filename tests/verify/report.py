@@ -95,7 +95,7 @@ def load_run(output):
 def add_orders(story):
     """Observed order of each row against the next coarser one of its series, where there is one.
 
-    Round-off has no order, nor has a case that says so.
+    Round-off has no order, nor has what the case says has none.
     """
     for row in story.get("runs", []):
         coarser = [
@@ -104,7 +104,7 @@ def add_orders(story):
             if other["series"] == row["series"] and other["spacing"] > row["spacing"] * (1 + 1e-9)
         ]
         row["order"] = None
-        if coarser and story.get("order", True):
+        if coarser and story.get("order", True) and not row.get("exact"):
             other = min(coarser, key=lambda r: r["spacing"])
             if row["error"] > 0 and other["error"] > ROUND_OFF:
                 ratio = math.log(other["spacing"] / row["spacing"])

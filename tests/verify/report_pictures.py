@@ -55,7 +55,7 @@ def series_of(rows, name="series"):
 def drawn_rows(runs):
     """The worst row of each curve and spacing, of the curves that are more than round-off."""
     worst = {}
-    for row in runs:
+    for row in (r for r in runs if not r.get("exact")):
         key = row.get("curve", row["series"]), row["spacing"]
         if key not in worst or row["error"] > worst[key]["error"]:
             worst[key] = {**row, "series": key[0]}
@@ -176,7 +176,7 @@ def draw_curves(story, picture, folder):
     if picture.get("equal"):
         axes.set_aspect("equal")
     axes.set_xlabel(picture["x_label"])
-    axes.set_ylabel(textwrap.fill(picture["y_label"], 38))
+    axes.set_ylabel(textwrap.fill(picture["y_label"], 32))
     axes.grid(True)
     legend(figure, axes)
     slug = re.sub(r"[^a-z0-9]+", "_", picture["name"].lower()).strip("_")

@@ -166,14 +166,17 @@ def targets_tables(stories):
 
     Targets of a case that differ in the run only are one row.
     """
-    rows = [
-        [link(s), words, *row[:-1]]
-        for name, words in ASKED.items()
-        for s in stories
-        if s["id"].split(" ")[0] == name
-        for row in collapsed([t for t in s["targets"] if t.get("asked")])
-    ]
-    parts = []
+    parts, rows = [], []
+    for name, words in ASKED.items():
+        members = [
+            [link(s), "", *row[:-1]]
+            for s in stories
+            if s["id"].split(" ")[0] == name
+            for row in collapsed([t for t in s["targets"] if t.get("asked")])
+        ]
+        if members:
+            members[0][1] = words
+        rows += members
     if rows:
         head = ["case", "asked for", "target", "measured", "wanted", "met"]
         parts += ["**Asked for**", "", table(head, rows, right=(3, 4)), ""]
@@ -278,8 +281,8 @@ def case_text(story, pictures, tests):
         ]
         parts += ["", table(["target", "measured", "wanted", "met"], rows, right=(1, 2))]
     if story["remedies"]:
-        rows = [[r["what"], r["without"], r["remedied"]] for r in story["remedies"]]
-        parts += ["", table(["hazard and remedy", "without the remedy", "with it"], rows)]
+        rows = [[r["what"], r["without"], r.get("by", "TALUS"), r["remedied"]] for r in story["remedies"]]
+        parts += ["", table(["hazard and remedy", "without the remedy", "run without by", "with it"], rows)]
     for extra in story["tables"]:
         parts += ["", f"{extra['name']}:", "", table(extra["head"], extra["rows"])]
     if story.get("checks"):

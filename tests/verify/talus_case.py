@@ -40,6 +40,7 @@ class Case:
         parser.add_argument("--full", action="store_true", help="all spacings, not the quick ones only")
         parser.add_argument("--report", help="JSON file to store the measured values in")
         self.options = parser.parse_args()
+        self.options.program = str(pathlib.Path(self.options.program).resolve())  # runs are in other folders
         self.full = self.options.full
         self.folder = pathlib.Path(folder)
         self.story = {
@@ -158,12 +159,13 @@ class Case:
         self.failures += not good
         print(f"{'ok  ' if good else 'FAIL'} {what}")
 
-    def study(self, series, result, spacing, error, curve=None):
+    def study(self, series, result, spacing, error, curve=None, exact=False):
         """One run of a study in mesh size: a row of the report's table, a point of its pictures.
 
         `series` names the rows ("one level, regular"), `spacing` in m, `error` relative, in the norm of
-        the case. Of the series that share a `curve`, the pictures show the worst alone. Nodes, seconds,
-        speed, smoothing and stabilisation come from the summary of the run.
+        the case. Of the series that share a `curve`, the pictures show the worst alone. What is `exact`
+        but for the tolerance of a solver has no order, and no place in the pictures. Nodes, seconds, speed,
+        smoothing and stabilisation come from the summary of the run.
         """
         summary = result.summary
         levels = int(summary["smoothing_levels"])
@@ -171,6 +173,7 @@ class Case:
             {
                 "series": series,
                 "curve": curve or series,
+                "exact": exact,
                 "nodes": int(summary["nodes"]),
                 "spacing": float(spacing),
                 "error": float(error),
@@ -229,17 +232,18 @@ class Case:
             self.target(f"time at {what} over that of {program}", ours / theirs, 1.0, story, asked=True)
         self.note(f"TALUS takes {ours:.3g} s for an error of {error:.2g}; {story}.")
 
-    def remedy(self, what, without, remedied, shown):
+    def remedy(self, what, without, remedied, shown, by="TALUS"):
         """What goes wrong without a remedy, run and shown.
 
         `what` tells hazard and remedy, `without` and `remedied` what was measured without and with it (text
-        with numbers); `shown` is true if the run without the remedy did go wrong.
+        with numbers); `shown` is true if the run without the remedy did go wrong. `by`: what ran without
+        it, where TALUS has no such choice.
         """
         self.failures += not shown
         self.story["remedies"].append(
-            {"what": what, "without": without, "remedied": remedied, "shown": bool(shown)}
+            {"what": what, "without": without, "remedied": remedied, "shown": bool(shown), "by": by}
         )
-        print(f"{'ok  ' if shown else 'FAIL'} {what}: without {without}; with {remedied}")
+        print(f"{'ok  ' if shown else 'FAIL'} {what}: without (by {by}) {without}; with {remedied}")
 
     def picture(self, name, x_label, y_label, curves, log_x=False, log_y=False, **more):
         """A line picture of the report. `curves`: name -> (x, y) or (x, y, matplotlib format).
@@ -267,7 +271,8 @@ class Case:
         )
 
     def table(self, name, head, rows):
-        """A table of the report besides the study: texts, or numbers, in columns."""
+        """A table of the report besides the study; its values are shown as they are."""
+        rows = [[str(value) for value in row] for row in rows]
         self.story["tables"].append({"name": name, "head": head, "rows": rows})
         for row in rows:
             print("     " + ", ".join(f"{title} {value}" for title, value in zip(head, row)))

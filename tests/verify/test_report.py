@@ -22,6 +22,7 @@ import case_list  # noqa: E402  (found through the path above)
 import run_cases  # noqa: E402
 from case_list import find_cases, select_cases  # noqa: E402
 from report import load_stories, store_run, store_story, thinned, write_report  # noqa: E402
+from report_pictures import drawn_rows  # noqa: E402
 from report_text import number  # noqa: E402
 from talus_case import seconds_at  # noqa: E402
 
@@ -133,6 +134,65 @@ class Report(unittest.TestCase):
         self.assertLess(min(thin_y), -0.999)
         self.assertTrue(np.all(np.diff(thin_x) > 0))
         self.assertEqual(thinned([1.0, 2.0], [3.0, 4.0], 300), ([1.0, 2.0], [3.0, 4.0]))
+
+    def test_targets_asked_for_come_first(self):
+        story = story_of("h1", [(0.01, 0.02), (0.03, 0.04)])
+        story["targets"][1]["asked"] = True
+        lines = self.write(story_of("m1", [(1, 2)]), story)
+        first = lines.index("**Asked for**")
+        self.assertLess(first, lines.index("**Our own: operators and mechanics**"))
+        rows = [line for line in lines if line.startswith("| [H1]")]
+        self.assertIn("| ≤ 0.5 % (L2, finest) | error 1 | **0.03** |", rows[0])
+        self.assertIn("| error 0 | **0.01** |", rows[1])
+        self.assertEqual([row["asked"] for row in self.rows("targets.csv")], ["no", "no", "yes"])
+
+    def test_no_orders_where_they_mean_nothing(self):
+        runs = [("fine", h, 3 * h**2, 1 / h) for h in (0.1, 0.05, 0.01)]
+        runs += [("solved", h, 1e-6 / h, 1 / h) for h in (0.1, 0.05, 0.01)]
+        solved = story_of("h1", runs=runs)
+        for row in solved["runs"][3:]:
+            row["exact"] = True
+        zero = story_of("h2", runs=runs[:3], order=False, work=False, quantity="distance")
+        text = "\n".join(self.write(solved, zero))
+        orders = [row["order"] for row in self.rows("studies.csv")]
+        self.assertEqual(orders, ["", "2.000", "2.000", *[""] * 6])
+        self.assertIn("| series | nodes | spacing [m] | distance | order |", text)
+        self.assertIn("verify_h1_convergence.png", text)
+        self.assertNotIn("verify_h2_", text)
+        self.assertEqual({row["series"] for row in drawn_rows(solved["runs"])}, {"fine"})
+
+    def test_the_worst_of_a_class_is_drawn(self):
+        rows = story_of("h1", runs=[(f"seed {i}", 0.1, i / 10, 1.0) for i in (2, 3, 1)])["runs"]
+        for row in rows:
+            row["curve"] = "all seeds"
+        self.assertEqual([(r["series"], r["error"]) for r in drawn_rows(rows)], [("all seeds", 0.3)])
+
+    def test_tables_captions_and_stand_ins(self):
+        curve = {"name": "a", "x": [0.0, 1.0], "y": [0.0, 1.0], "style": "-"}
+        picture = {"name": "One, two", "x_label": "x [m]", "y_label": "y [m]", "log_x": False, "log_y": False}
+        remedy = {"what": "hazard", "without": "bad", "remedied": "good", "shown": True}
+        story = story_of(
+            "h1",
+            tables=[{"name": "Thresholds", "head": ["times", "F"], "rows": [["3", "1.38"]]}],
+            pictures=[{**picture, "curves": [curve]}],
+            remedies=[remedy, {**remedy, "by": "numpy stand-in"}],
+        )
+        lines = self.write(story)
+        self.assertIn("| 3 | 1.38 |", lines)
+        self.assertIn("| hazard | bad | TALUS | good |", lines)
+        self.assertIn("| hazard | bad | numpy stand-in | good |", lines)
+        place = lines.index("![One, two](report/verify_h1_one_two.png)")
+        self.assertEqual(lines[place + 1 : place + 3], ["", "*One, two*"])
+
+    def test_studies_are_printed(self):
+        story = story_of("h1", runs=[("fine", h, 3 * h**2, 1 / h) for h in (0.1, 0.05)])
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            run_cases.print_study(story)
+        head, first, second = printed.getvalue().splitlines()
+        self.assertEqual(head.split()[:3], ["series", "nodes", "spacing"])
+        self.assertEqual(first.split()[:5], ["fine", "10", "0.1", "0.03", "-"])
+        self.assertEqual(second.split()[4], "2.00")
 
     def test_failures_and_absent_cases_are_named_first(self):
         self.add_case("h3", "H3")

@@ -71,36 +71,42 @@ def weight(spacing, change=(), name="weight"):
     return run, balanced, run.field("stress", snapshot=balanced)[:, 1], WEIGHT * (y - HEIGHT)
 
 
+def row_averages(y, stress):
+    """Heights of the rows between the ends, and stress there averaged over three rows by 1/4, 1/2, 1/4."""
+    rows = np.unique(np.round(y, 6))
+    mean = np.array([np.mean(stress[np.abs(y - row) < 1e-6]) for row in rows])
+    return rows[1:-1], 0.25 * (mean[:-2] + 2 * mean[1:-1] + mean[2:])
+
+
 def weights(spacings):
     for spacing in spacings:
         run, balanced, stress, exact = weight(spacing)
         case.study("weight", run, spacing, relative(run.area, stress, exact))
+        rows, values = row_averages(run.nodes[:, 1], stress)
+        right = WEIGHT * (rows - HEIGHT)
+        case.study("weight, averages of rows", run, spacing, relative(np.ones_like(rows), values, right))
     y = run.nodes[:, 1]
     sunk = run.field("displacement", snapshot=balanced)[:, 1]
     top = y > HEIGHT - 1e-6
-    right = settled(LOWER[spacing], np.array([HEIGHT]))[0]
-    case.target(f"settlement of the top, h = {spacing} m", abs(sunk[top].mean() / right - 1), 0.02, "our own")
+    sinks = settled(LOWER[spacing], np.array([HEIGHT]))[0]
+    case.target(f"settlement of the top, h = {spacing} m", abs(sunk[top].mean() / sinks - 1), 0.02, "our own")
     case.target("L2 error of stress", relative(run.area, stress, exact), 0.10, "our own, see the note")
-    mean = {}
-    for row in np.unique(np.round(y, 6)):
-        mean[row] = np.mean(stress[np.abs(y - row) < 1e-6])
-    rows = np.array(list(mean))
-    values = np.array(list(mean.values()))
-    smooth = 0.25 * (values[:-2] + 2 * values[1:-1] + values[2:])
-    off = np.abs(smooth / WEIGHT - (rows[1:-1] - HEIGHT)).max() / HEIGHT
+    off = np.abs(values - right).max() / (WEIGHT * HEIGHT)
     case.target("stress averaged over neighbouring rows: largest error over rho g H", off, 0.05, "our own")
     case.target("energy error of the dynamic stage", abs(float(run.summary["energy_error"])), 1e-3, "limit")
     largest = np.abs(stress - exact).max() / (WEIGHT * HEIGHT)
     case.note(
         "At a jump of stiffness stress alternates from row to row; the stabilisation, which carries a "
         f"share of the load there, lets it decay; largest error {largest:.2g} of rho g H at h = {spacing} m. "
-        "Averages of neighbouring rows carry the load."
+        "The alternation is as large at every spacing, over about as many rows, so that its L2 norm falls "
+        "with the root of h at best. Averages of neighbouring rows carry the load, with a fortieth of that "
+        "error."
     )
     order = np.argsort(y, kind="stable")
     case.picture(
-        "stress",
-        "vertical stress [kPa]",
-        "elevation [m]",
+        "Vertical stress over the height",
+        "Vertical stress [kPa]",
+        "Elevation [m]",
         {
             "exact": (exact[order] / 1e3, y[order]),
             "TALUS": (stress[order] / 1e3, y[order], "."),
@@ -128,7 +134,7 @@ def flows(spacings):
         y = run.nodes[:, 1]
         head = run.field("pore_pressure") / WATER + y
         exact = head_exact(LOWER[spacing], y)
-        case.study("flow", run, spacing, relative(run.area, head - 2, exact - 2))
+        case.study("flow", run, spacing, relative(run.area, head - 2, exact - 2), exact=True)
         history = run.history()
         flux = (history["water_in"][-1] - history["water_in"][0]) / (WIDTH * DURATION)
         out = (history["water_out"][-1] - history["water_out"][0]) / (WIDTH * DURATION)
@@ -147,11 +153,12 @@ def flows(spacings):
         case.target(f"h = {spacing} m: water error", abs(float(run.summary["water_error"])), 1e-12, "limit")
         wrong = arithmetic_flux(spacing) / series - 1
     case.remedy(
-        "flux between soils with arithmetic means of conductivity at faces (computed here on the same rows); "
+        "flux between soils with arithmetic means of conductivity at faces; "
         "remedy: halves of an edge in series",
         f"{wrong:.2g} relative error of the flux at h = {spacing} m",
         f"{abs(flux / series - 1):.1g}",
         abs(wrong) > 0.01,
+        by="numpy stand-in on the same rows, not TALUS",
     )
 
 

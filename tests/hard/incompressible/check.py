@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Hard 3: no locking at nu = 0.4999 and in saturated undrained soil, and no pressure checkerboard.
 
-Timoshenko's cantilever in plane strain (see tests/verify/cantilever), its tip deflection after the rigid
-motion of the three held displacements is taken out. A strip load on saturated soil with stiff pore water
-(S_s = 2e-10/Pa, K_w over the soil's modulus about 400), at once: its settlement is that of the same dry soil
-at nu_u = (K + 1/S_s - 2/3 G)/(2 (K + 1/S_s + 1/3 G)). Alternation of the excess pressure is measured on
-inner nodes of the regular grid as root mean square of (2 p_i - p_i-1 - p_i+1)/4, which leaves an alternating
-field whole, along x, along y, and along both in turn (the checkerboard), over that of the pressure.
+Timoshenko's cantilever in plane strain (E' = E/(1-nu^2), nu' = nu/(1-nu)). Its root has the exact
+displacements at every node, its tip the exact shear: no rigid motion is left to take out, and no corner is
+singular. Tip deflection is that of the middle of the end, within 5 % of the exact (required). At two levels
+ell = 3 h: such a beam is softer at any Poisson's ratio, so locking is its tip deflection against that at nu =
+0.3, each over its exact one, and is reported beside the deflection itself.
+
+A strip load on saturated soil with stiff pore water (S_s = 2e-10/Pa, K_w over the soil's modulus about 400),
+at once: its settlement is that of the same dry soil at nu_u = (K + 1/S_s - 2/3 G)/(2 (K + 1/S_s + 1/3 G)).
+
+Alternation is what the smooth fit through its neighbours does not explain: (p_i-2 - 4 p_i-1 + 6 p_i - 4 p_i+1
++ p_i+2)/16 is nothing for any cubic and all of a field that alternates. It is taken along x, along y, and
+along both in turn (the checkerboard), as root mean square over that of the pressure. At two levels the force
+on a node comes from the mean of stress over ell (src/THEORY.md (4.8)), by the same weights as strain: that
+mean is the stress that acts, and the values at the nodes may alternate without any force.
 """
 
 import pathlib
@@ -18,7 +26,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "verify"))
 from talus_case import Case  # noqa: E402
 
 YOUNG, POISSON, LENGTH, DEPTH, LOAD = 1.0e7, 0.4999, 4.0, 1.0, 10.0
-E1, NU1 = YOUNG / (1 - POISSON**2), POISSON / (1 - POISSON)
 INERTIA = DEPTH**3 / 12
 STORAGE, WATER = 2.0e-10, 9810.0
 
@@ -26,57 +33,47 @@ case = Case(
     pathlib.Path(__file__).parent,
     id="hard 3",
     title="nearly incompressible soil and saturated undrained loading",
-    error="relative error of the tip deflection at nu = 0.4999",
+    error="relative error of the tip deflection",
     reference="Timoshenko & Goodier, plane strain",
 )
 
 
-def tractions(spacing):
-    """&boundary groups of both ends: linear normal stress at x = 0, parabolic shear at both."""
+def ends(spacing, poisson):
+    """&boundary groups: exact displacements of the root's nodes, parabolic shear at the tip."""
     groups = []
     edges = np.linspace(-DEPTH / 2, DEPTH / 2, round(DEPTH / spacing) + 1)
+    for y, (along, across) in zip(edges, exact(0.0 * edges, edges, poisson)):
+        groups.append(
+            f"&boundary\n  where = 'box'\n  to_x = 0.01\n  from_y = {y - 0.01}\n  to_y = {y + 0.01}\n"
+            f"  velocity_x = {along}\n  velocity_y = {across}\n/\n"
+        )
     for low, high in zip(edges[:-1], edges[1:]):
-        square = (high**3 - low**3) / (3 * (high - low))
-        shear = LOAD / (2 * INERTIA) * (DEPTH**2 / 4 - square)
-        normal = -LOAD * LENGTH / INERTIA * (low + high) / 2
-        for x, along, across in ((0.0, normal, shear), (LENGTH, 0.0, -shear)):
-            groups.append(
-                f"&boundary\n  where = 'box'\n  from_x = {x - 0.01}\n  to_x = {x + 0.01}\n"
-                f"  from_y = {low}\n  to_y = {high}\n  traction_x = {along}\n  traction_y = {across}\n/\n"
-            )
+        groups.append(
+            f"&boundary\n  where = 'box'\n  from_x = {LENGTH - 0.01}\n  from_y = {low}\n  to_y = {high}\n"
+            f"  traction_y = {-shear_of(low, high)}\n/\n"
+        )
     return "".join(groups)
 
 
-def exact(x, y):
-    scale = LOAD / (6 * E1 * INERTIA)
+def shear_of(low, high):
+    """Mean shear stress of the beam between two heights [Pa]."""
+    return LOAD / (2 * INERTIA) * (DEPTH**2 / 4 - (high**3 - low**3) / (3 * (high - low)))
+
+
+def exact(x, y, poisson=POISSON):
+    """Displacement of Timoshenko's beam [m], (n, 2)."""
+    young, nu = YOUNG / (1 - poisson**2), poisson / (1 - poisson)
+    scale = LOAD / (6 * young * INERTIA)
+    bending = 3 * nu * y**2 * (LENGTH - x) + (4 + 5 * nu) * DEPTH**2 * x / 4 + (3 * LENGTH - x) * x**2
     return np.stack(
-        [
-            scale * y * ((6 * LENGTH - 3 * x) * x + (2 + NU1) * (y**2 - DEPTH**2 / 4)),
-            -scale
-            * (3 * NU1 * y**2 * (LENGTH - x) + (4 + 5 * NU1) * DEPTH**2 * x / 4 + (3 * LENGTH - x) * x**2),
-        ],
-        axis=1,
+        [scale * y * ((6 * LENGTH - 3 * x) * x + (2 + nu) * (y**2 - DEPTH**2 / 4)), -scale * bending],
+        axis=-1,
     )
 
 
-def stiff(nodes, area, field):
-    """A displacement field less its mean and its mean rotation about the middle of the beam."""
-    arm = nodes - [LENGTH / 2, 0.0]
-    field = field - np.sum(field * area[:, None], axis=0) / np.sum(area)
-    turn = np.sum(area * (arm[:, 0] * field[:, 1] - arm[:, 1] * field[:, 0]))
-    turn /= np.sum(area * np.sum(arm**2, axis=1))
-    return field - turn * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-
-
-def deflection(nodes, area, field):
-    """How far the tip hangs below the chord of the beam: tip less middle plus root less middle."""
-    bent = stiff(nodes, area, field)[:, 1]
-    middle = np.abs(nodes[:, 1]) < 1e-9
-
-    def at(x):
-        return bent[middle & (np.abs(nodes[:, 0] - x) < 1e-9)][0]
-
-    return at(LENGTH) + at(0.0) - 2 * at(LENGTH / 2)
+def tip(nodes, field):
+    """Deflection of the middle of the end [m]."""
+    return field[np.argmin(np.hypot(nodes[:, 0] - LENGTH, nodes[:, 1])), 1]
 
 
 def quadrilaterals(spacing):
@@ -102,34 +99,38 @@ def quadrilaterals(spacing):
             place = np.stack([2 * own, 2 * own + 1], axis=1).ravel()
             matrix[np.ix_(place, place)] += element
     for j in range(rows - 1):
-        low, high = nodes[j, 1], nodes[j + 1, 1]
-        across = LOAD / (2 * INERTIA) * (DEPTH**2 / 4 - (high**3 - low**3) / (3 * (high - low))) * spacing / 2
         for k in (j, j + 1):
-            force[2 * k] -= LOAD * LENGTH / INERTIA * (low + high) / 2 * spacing / 2
-            force[2 * k + 1] += across
-            force[2 * (k + (columns - 1) * rows) + 1] -= across
-    middle, top = rows // 2, rows - 1
-    free = np.setdiff1d(np.arange(len(force)), [2 * middle, 2 * middle + 1, 2 * top])
+            force[2 * (k + (columns - 1) * rows) + 1] -= shear_of(nodes[j, 1], nodes[j + 1, 1]) * spacing / 2
     found = np.zeros(len(force))
+    found[: 2 * rows] = exact(*nodes[:rows].T).ravel()
+    free = np.arange(2 * rows, len(force))
+    force -= matrix @ found
     found[free] = np.linalg.solve(matrix[np.ix_(free, free)], force[free])
-    weight = np.where(np.isin(nodes[:, 0], (0.0, LENGTH)), 0.5, 1.0)
-    weight = weight * np.where(np.abs(nodes[:, 1]) > DEPTH / 2 - 1e-9, 0.5, 1.0) * spacing**2
-    return deflection(nodes, weight, found.reshape(-1, 2)) / deflection(nodes, weight, exact(*nodes.T)) - 1
+    return tip(nodes, found.reshape(-1, 2)) / tip(nodes, exact(*nodes.T)) - 1
+
+
+def beam(spacing, length, poisson=POISSON):
+    """Result, and error of the tip deflection; `length` of the second level, 0 for one level."""
+    run = case.run(
+        "beam.nml",
+        [
+            ("spacing = 0.25", f"spacing = {spacing}"),
+            ("levels = 1", f"levels = 2\n  length = {length}" if length else "levels = 1"),
+            ("poisson_ratio = 0.4999", f"poisson_ratio = {poisson}"),
+            ("&stage", ends(spacing, poisson) + "&stage"),
+        ],
+        name=f"beam_{spacing}_{length}_{poisson}",
+    )
+    case.check_true(f"beam, h = {spacing} m, nu = {poisson}: balanced", run.summary["failed"] == ".false.")
+    return run, tip(run.nodes, run.field("displacement")) / tip(run.nodes, exact(*run.nodes.T, poisson)) - 1
 
 
 def beams():
-    for spacing in (0.25, 0.125, 1 / 12) if case.full else (0.125,):
-        run = case.run(
-            "beam.nml",
-            [("spacing = 0.25", f"spacing = {spacing:.12g}"), ("&stage", tractions(spacing) + "&stage")],
-            name=f"beam_{spacing}",
-        )
-        case.check_true("the beam is in balance", run.summary["failed"] == ".false.")
-        right = deflection(run.nodes, run.area, exact(run.nodes[:, 0], run.nodes[:, 1]))
-        error = deflection(run.nodes, run.area, run.field("displacement")) / right - 1
+    for spacing in (0.25, 0.125, 0.0625) if case.full else (0.25, 0.125):
+        run, error = beam(spacing, 0.0)
         case.study("cantilever, one level", run, spacing, abs(error))
-        if spacing < 0.2:
-            case.target(f"tip deflection, h = {spacing:.4g} m", abs(error), 0.05, "required")
+        case.target(f"one level, h = {spacing:g} m: tip deflection", abs(error), 0.05, "required")
+        calm(f"one level, h = {spacing:g} m: mean stress", run, mean_stress(run), spacing)
         if spacing == 0.125:
             locked = quadrilaterals(spacing)
             case.remedy(
@@ -139,22 +140,67 @@ def beams():
                 f"{error:.2g}",
                 locked < -0.2,
             )
+    for spacing in (0.25, 0.125, 0.0625) if case.full else (0.25,):
+        run, error = beam(spacing, 3 * spacing)
+        what = f"two levels, ell = 3 h, h = {spacing:g} m"
+        case.study("cantilever, two levels, ell = 3 h", run, spacing, abs(error))
+        held = {0.25: (0.0, 0.7), 0.125: (0.0, 0.16)}.get(spacing)
+        case.target(f"{what}: tip deflection", abs(error), 0.05, "required", held=held)
+        _, softer = beam(spacing, 3 * spacing, 0.3)
+        ratio = (1 + error) / (1 + softer) - 1
+        case.target(f"{what}: tip deflection over that at nu = 0.3, less one", abs(ratio), 0.05, "no locking")
+        calm(f"{what}: mean stress", run, mean_stress(run), spacing, 3 * spacing)
 
 
-def excess_grid(run):
-    """Excess pressure on the grid of the footing, (columns, rows)."""
-    place = np.rint(run.nodes / 0.1).astype(int)
+def mean_stress(run):
+    return run.field("stress")[:, :3].mean(axis=1)
+
+
+def on_grid(run, field, spacing):
+    """A field on the regular grid of nodes, (columns, rows)."""
+    place = np.rint((run.nodes - run.nodes.min(axis=0)) / spacing).astype(int)
     grid = np.zeros(place.max(axis=0) + 1)
-    grid[place[:, 0], place[:, 1]] = run.field("pore_pressure") - WATER * (2.0 - run.nodes[:, 1])
+    grid[place[:, 0], place[:, 1]] = field
     return grid
+
+
+def acting(run, field, length):
+    """A field averaged by the weights of the second level (src/THEORY.md (4.7)), cubic B-spline."""
+    z = np.linalg.norm(run.nodes[:, None] - run.nodes[None], axis=2) / length
+    kernel = np.where(z <= 0.5, 2 / 3 - 4 * z**2 + 4 * z**3, np.where(z <= 1, 4 / 3 * (1 - z) ** 3, 0.0))
+    scale = np.ones(len(field))
+    for _ in range(100):
+        scale = np.sqrt(scale / (kernel @ (scale * run.area)))
+    return scale * (kernel @ (scale * run.area * field))
 
 
 def alternation(grid):
     """Alternating share of a field along x, along y and along both, see the top."""
-    along_x = (2 * grid[1:-1] - grid[:-2] - grid[2:]) / 4
-    along_y = (2 * grid[:, 1:-1] - grid[:, :-2] - grid[:, 2:]) / 4
-    both = (2 * along_x[:, 1:-1] - along_x[:, :-2] - along_x[:, 2:]) / 4
-    return [np.sqrt(np.mean(part**2) / np.mean(grid**2)) for part in (along_x, along_y, both)]
+
+    def along(part, axis):
+        part = np.moveaxis(part, axis, 0)
+        part = (part[:-4] - 4 * part[1:-3] + 6 * part[2:-2] - 4 * part[3:-1] + part[4:]) / 16
+        return np.moveaxis(part, 0, axis)
+
+    parts = along(grid, 0), along(grid, 1), along(along(grid, 0), 1)
+    return [np.sqrt(np.mean(part**2) / np.mean(grid**2)) for part in parts]
+
+
+def calm(what, run, pressure, spacing, length=0.0):
+    """Targets for the alternation of a pressure; at two levels for the nodes' own, and that which acts."""
+    if length:
+        own = alternation(on_grid(run, pressure, spacing))
+        why = "our own; the nodes' own values, which act through their mean only"
+        case.target(f"{what} of the nodes: checkerboard", own[2], 0.01, why, held=(0.0, 0.05))
+        case.target(f"{what} of the nodes: alternation in lines", max(own[:2]), 0.05, why, held=(0.0, 0.45))
+        pressure, what = acting(run, pressure, length), f"{what} that acts"
+    x, y, both = alternation(on_grid(run, pressure, spacing))
+    case.target(f"{what}: checkerboard", both, 0.01, "our own")
+    case.target(f"{what}: alternation in lines", max(x, y), 0.05, "our own")
+
+
+def excess(run):
+    return run.field("pore_pressure") - WATER * (2.0 - run.nodes[:, 1])
 
 
 def settlement(run):
@@ -163,26 +209,21 @@ def settlement(run):
 
 
 def footing():
-    wet = case.run("footing.nml")
-    dry = case.run("dry.nml")
-    for run, name in ((wet, "saturated"), (dry, "dry")):
-        case.check_true(f"{name}: balanced", run.summary["failed"] == ".false.")
-    ratio = settlement(wet) / settlement(dry)
-    case.target(
-        "undrained settlement over that at nu_u, less one", abs(ratio - 1), 0.05, "our own: no locking"
-    )
-    along_x, along_y, both = alternation(excess_grid(wet))
-    case.target("excess pressure: checkerboard over pressure", both, 0.01, "our own")
-    case.target(
-        "excess pressure: alternation along y", along_y, 0.05, "our own; some of it is the true curvature"
-    )
-    case.target(
-        "excess pressure: alternation along x", along_x, 0.05, "our own; some of it is the true curvature"
-    )
-    case.check("water error", abs(float(wet.summary["water_error"])), 1e-12, "round-off")
-    case.check(
-        "pressure left to later steps", float(wet.summary["coupling_error"]), 1e-2, "src/THEORY.md 5.6"
-    )
+    for length in (0.0, 0.3) if case.full else (0.0,):
+        smoothing = [("levels = 1", f"levels = 2\n  length = {length}")] if length else []
+        what = f"two levels, ell = {length} m" if length else "one level"
+        runs = [case.run(f"{name}.nml", smoothing, name=f"{name}_{length}") for name in ("footing", "dry")]
+        for run, name in zip(runs, ("saturated", "dry")):
+            case.check_true(f"{what}, {name}: balanced", run.summary["failed"] == ".false.")
+        ratio = settlement(runs[0]) / settlement(runs[1])
+        why = "our own: no locking"
+        case.target(f"{what}: undrained settlement over that at nu_u, less one", abs(ratio - 1), 0.05, why)
+        calm(f"{what}: excess pressure", runs[0], excess(runs[0]), 0.1, length)
+        case.check(f"{what}: water error", abs(float(runs[0].summary["water_error"])), 1e-12, "round-off")
+        left = float(runs[0].summary["coupling_error"])
+        case.check(f"{what}: pressure left to later steps", left, 1e-2, "src/THEORY.md 5.6")
+        if not length:
+            wet, dry = runs
     # Every node for itself: water fixed, in a damped dynamic stage with scaled masses.
     text = (case.folder / "footing.nml").read_text()
     load = text[text.index("  kind = 'storm'") : text.rindex("/")]
@@ -190,23 +231,27 @@ def footing():
         "  kind = 'dynamic'\n  duration = 4000.0\n  damping = 0.7\n  mass_scaling = .true.\n  snapshots = 1\n"
     )
     nodal = case.run("footing.nml", [(load, alone)], name="nodal")
-    rough = alternation(excess_grid(nodal))
+    rough, left = (alternation(on_grid(run, excess(run), 0.1)) for run in (nodal, wet))
+    firm = alternation(on_grid(dry, mean_stress(dry), 0.1))
     case.remedy(
-        "alternating pore pressure where every node keeps its own stiff water (dynamic stage); remedy: "
-        "pressures that the flow's storage regularises, water and soil in turns",
-        f"checkerboard {rough[2]:.2g}, rows {rough[1]:.2g} of the pressure (root mean square)",
-        f"{both:.2g} and {along_y:.2g}",
-        rough[1] > 1.5 * along_y,
+        "pore pressure that alternates from row to row where every node keeps its own stiff water (dynamic "
+        "stage); remedy: pressures that the flow's storage regularises, water and soil in turns",
+        f"rows {rough[1]:.2g}, checkerboard {rough[2]:.2g} of the pressure (root mean square)",
+        f"{left[1]:.2g} and {left[2]:.2g}",
+        rough[1] > 1.5 * left[1],
+    )
+    case.note(
+        f"What is left alternates from row to row by {left[1]:.1%} of the pressure, as the picture shows. "
+        f"Dry soil at nu_u, where nothing regularises, has {firm[1]:.1%} in its mean stress."
     )
     depth = 2.0 - 0.1 * np.arange(21)
+    curves = {"water and soil in turns": (excess(wet), "-"), "every node for itself": (excess(nodal), "--")}
+    curves["dry, at nu_u: pressure"] = (-mean_stress(dry), ":")
     case.picture(
         "pressure",
         "excess pressure under the load, x = 0.5 m [kPa]",
         "elevation [m]",
-        {
-            "water and soil in turns": (excess_grid(wet)[5, ::-1] / 1e3, depth),
-            "every node for itself": (excess_grid(nodal)[5, ::-1] / 1e3, depth, "--"),
-        },
+        {name: (on_grid(wet, p, 0.1)[5, ::-1] / 1e3, depth, style) for name, (p, style) in curves.items()},
     )
 
 

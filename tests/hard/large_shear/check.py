@@ -20,6 +20,7 @@ from talus_case import Case  # noqa: E402
 YOUNG, POISSON, STRAIN = 2.6e6, 0.3, 3.0
 SHEAR, BULK = YOUNG / (2 * (1 + POISSON)), YOUNG / (3 * (1 - 2 * POISSON))
 COHESION, PHI, PSI = 10.0e3, np.radians(30.0), np.radians(5.0)
+STAND_IN = "numpy stand-in at one point, not TALUS"
 PLASTIC = "'drucker_prager' cohesion = 10.0e3 friction_angle = 30.0 dilation_angle = 5.0"
 
 case = Case(
@@ -125,9 +126,9 @@ def follow_all():
     start = [np.abs(numpy_path(n, "start of the step") - elastic(STRAIN)).max() / SHEAR for n in counts]
     small = [np.abs(numpy_path(n, "small strain") - elastic(STRAIN)).max() / SHEAR for n in counts]
     case.picture(
-        "elastic shear of 300 %: error over number of steps",
-        "steps",
-        "error of the stress over G",
+        "Elastic shear of 300 %: error over number of steps",
+        "Number of steps [-]",
+        "Error of the stress over G [-]",
         {
             "TALUS": (counts, errors, "o-"),
             "increment not turned": (counts, naive, "s--"),
@@ -142,6 +143,7 @@ def follow_all():
         f"the error of the stress is {small[-1]:.2f} G (sigma_xy = {STRAIN:.0f} G in place of 0.14 G)",
         f"{errors[-1]:.1e} G",
         small[-1] > 1 and errors[-1] < 1e-5,
+        by=STAND_IN,
     )
     case.remedy(
         "large shear, 1000 steps: strain increment left in the middle of the step (Hughes & Winget as "
@@ -149,6 +151,7 @@ def follow_all():
         f"errors of {naive[-1]:.1e} and {start[-1]:.1e} G, first order",
         f"{errors[-1]:.1e} G with the increment turned by half the rotation, second order",
         min(naive[-1], start[-1]) > 100 * errors[-1],
+        by=STAND_IN,
     )
 
 
@@ -197,7 +200,7 @@ def inside_free():
         shown[f"{name}: sigma_yy"] = (gammas, [m[1] / 1e3 for m in mean], "s")
     shown["exact: sigma_xy"] = (gammas, exact_path[:, 3] / 1e3, "k-")
     shown["exact: sigma_yy"] = (gammas, exact_path[:, 1] / 1e3, "k--")
-    case.picture("Drucker-Prager soil, its boundary sheared", "shear strain", "stress [kPa]", shown)
+    case.picture("Drucker-Prager soil, its boundary sheared", "Shear strain [-]", "Stress [kPa]", shown)
 
 
 def turns():
@@ -223,6 +226,7 @@ def turns():
         f"strain {strain[0, 0]:.2f} in each direction of a block that but turned: pressure {pressure:.2f} E",
         f"{stress / 1e7:.1e} E with that of the middle of the step",
         pressure > 0.1,
+        by=STAND_IN,
     )
     result = case.run("spin.nml", [] if case.full else [("snapshots = 200", "snapshots = 50")])
     history, mass = result.history(), 2000.0 * result.area

@@ -104,7 +104,7 @@ def studies():
                 case.target("rain: L2 error of suction head, 21 rows", head_error[-1], 0.01, "our own")
                 curves["exact"] = (rain_head(np.linspace(0, 2, 100)), np.linspace(0, 2, 100))
                 curves["all nodes, perturbed and graded"] = (head, rain.nodes[:, 1], ".")
-    case.picture("suction", "pressure head [m]", "elevation [m]", curves)
+    case.picture("Pressure head over the height", "Pressure head [m]", "Elevation [m]", curves)
 
 
 def without_stabilisation():

@@ -44,12 +44,13 @@ for what, name, replace, held in (
         "half the step of the slide",
         "half_step",
         ("name = 'slide'", "name = 'slide'\n  step_safety = 0.45"),
-        0.03,
+        0.01,
     ),
-    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.35),
+    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.28),
 ):
     other = slope(name, replace)
     curves[what] = other[3]
+    case.study(what, other[3], 0.35, abs(other[0] / largest - 1.0))
     for quantity, one, two in (("greatest", largest, other[0]), ("mean", mean, other[1])):
         change = abs(two / one - 1.0)
         case.target(f"{what}: change of the {quantity} displacement", change, 0.01, "limit", held=(0.0, held))
@@ -76,12 +77,36 @@ case.remedy(
     f"largest displacement {largest:.3g} m",
     flown.max() > 5.0 * largest,
 )
+# How much strength is in the stabilisation: the factor of safety of the standing slope after 16 h.
+STORM = ("duration = 129600.0", "duration = 57600.0")
+SLIDE = "name = 'slide'\n  kind = 'dynamic'\n  only_after_failure = .true.\n  solve = 'soil'\n  duration = 15.0"
+FACTOR = (SLIDE, "name = 'factor'\n  kind = 'strength_reduction'\n  factor_tolerance = 0.002")
+
+
+def factor(smoothing, stabilisation):
+    """Factor of safety after 16 h of rain."""
+    replace = [("levels = 2\n  length = 1.1", f"{smoothing}\n  stabilisation = {stabilisation}"), STORM, FACTOR]
+    summary = case.run("case.nml", replace, name=f"factor_{smoothing[9]}_{stabilisation}").summary
+    return float(summary["factor_of_safety"])
+
+
+factors = {
+    level: [factor(smoothing, alpha) for alpha in (0.05, 0.1)]
+    for level, smoothing in (("one level", "levels = 1"), ("two levels", "levels = 2\n  length = 1.1"))
+}
+for level, (once, twice) in factors.items():
+    case.check(f"factor of safety at 16 h, {level}: change by twice the stabilisation", twice / once - 1, 0.015, "held")
 case.note(
-    "Twice the stabilisation misses: it resists where F, smoothed over ell, differs from the motion of the "
-    "nodes, and a shear band is such a place. The slope then fails later, in a wetter state, and slides less "
-    "far. Tried: a tolerance of 1e-5 in place of 1e-4 and storm steps of 900 s move the times of failure of "
-    "both by under 3 % and leave their distance of 10 %; with a stabilisation of 0.004 single nodes fly off. "
-    "A residual of the F of the first level brings the times of failure to within 4 %, but lets nodes of the "
-    "sliding mass fly off at 0.05 (17 m), and the free square's frequencies fall by 10 % at ell = 3h."
+    "Twice the stabilisation misses. What it adds is a little strength: the factor of safety after 16 h goes from "
+    + " and ".join(f"{a:.4g} to {b:.4g} at {level}" for level, (a, b) in factors.items())
+    + ". But rain takes only some 1 % of this slope's factor in an hour, and the slide is driven by what the soil "
+    "lacks of balance, a few per cent of the weight: the slope fails later and slides less far. F, smoothed over "
+    "ell, differs from the motion of the nodes, most of all in a shear band, and only the stabilisation resists "
+    "there. Tried: a tolerance of 1e-5 and storm steps of 900 s move the times of failure of both by under 3 % "
+    "and leave their distance of 10 %. A square of beta (4.11) acts as half the stabilisation does. A residual "
+    "of 2 W - W W in place of W F leaves 0.6 % of the 0.9 % of the factor, 3 W - 3 W W + W W W 0.8 %, at one "
+    "and two more smoothings both ways; weights with a cusp at the centre, (1 - q) exp(-8 q), 0.4 %, with less "
+    "smoothing. A residual of the F of the first level brings the times of failure to within 4 %, but lets nodes "
+    "of the sliding mass fly off at 0.05 (17 m), and the free square's frequencies fall by 10 % at ell = 3h."
 )
 sys.exit(case.verdict())

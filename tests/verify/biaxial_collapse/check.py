@@ -82,7 +82,9 @@ for dilation in (0, 10):
         worst = max(worst, abs(last(ratio) - 1))
         what = f"psi = {dilation}, phi = {soil[0]}, c = {soil[1] / 1e3:g} kPa, {soil[2] / 1e3:g} kPa"
         case.study(what, result, 0.5, abs(last(ratio) - 1))
-    case.target(f"tan(phi) recovered, psi = {dilation}, worst of all soils", worst, 0.002, "required, M6")
+    case.target(
+        f"tan(phi) recovered, psi = {dilation}, worst of all soils", worst, 0.002, "required, M6", asked=True
+    )
 for fit in ("compression", "extension") if case.full else ("compression",):
     result, strain, ratio = compress(SOILS[0], 0, fit)
     curves[f"{fit} cone, psi = 0"] = (100 * strain, ratio, "--")
@@ -106,5 +108,7 @@ if case.full:
         f"{100 * (strengths['two levels'] - 1):+.2f} %",
         abs(strengths["one level"] - 1) > 0.005 and abs(strengths["two levels"] - 1) < 0.002,
     )
-case.picture("Friction mobilised in the plane", "axial strain in %", "tan(phi) recovered / tan(phi)", curves)
+case.picture(
+    "Friction mobilised in the plane", "Axial strain [%]", "tan(phi) recovered / tan(phi) [-]", curves
+)
 sys.exit(case.verdict())

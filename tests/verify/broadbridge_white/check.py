@@ -85,7 +85,12 @@ for time in TIMES:
         f"water that is not 0.5 t at t = {time}", abs(stored - 0.5 * time - start), 1e-6, "no water is lost"
     )
 if case.full:
-    case.target("error on the finest nodes, 40 to a unit", error[401], 0.005, "the accuracy asked for")
+    case.target("error on the finest nodes, 40 to a unit", error[401], 0.005, "H1", asked=True)
+    case.note(
+        "The error flattens at 2.7e-4, since the exact solution starts from Theta = 0, at no finite suction, "
+        "and the deck from 100 MPa, where Theta is 2e-5: from 1000 MPa it is 8e-5 with 401 rows, at 40 times "
+        "the cost. It is largest at t = 0.5; at t = 8 it is 4e-5."
+    )
 case.target(
     "largest water error of all runs",
     max(abs(float(result.summary["water_error"])) for result in results.values()),

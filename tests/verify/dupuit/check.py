@@ -2,9 +2,14 @@
 """Flow through a rectangular dam with a seepage face, from the steady start.
 
 q = k (h1^2 - h2^2)/(2 L) holds exactly however high the seepage face is (Charny 1951), for soil that is dry
-above the water table. The capillary fringe of the soil here, 1/alpha, carries water too and is halved with
-the spacing: Charny's sum of the flow over a vertical, with the fringe in it, gives k (h1 - h2)/(alpha L) more
-at most. A day of transient flow from the start has the same flow in and out: the start is steady.
+above the water table. The soil here has a capillary fringe of 1/alpha = 1 cm, the same at all spacings, that
+carries water too. Charny's sum of the flow over a vertical, with the fringe in it, stays exact:
+
+    q L/k = (h1^2 - h2^2)/2 + integral of (1 - exp(alpha psi))/alpha over the unsaturated part of the outlet,
+
+at most 0.33 % more. The error is measured against that, with psi as found there, and beside it against
+Charny's 0.600 m2/d, which is the target. A day of transient flow from the start has the same flow in and out:
+the start is steady. Perturbed nodes: three seeds.
 """
 
 import sys
@@ -15,23 +20,28 @@ sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from talus_case import Case  # noqa: E402
 
 EXACT = 0.5 * (5.0**2 - 1.0**2) / (2 * 10.0)  # m2/d
+ALPHA = 100.0  # 1/m, as in the deck
 
 case = Case(
     __file__.rsplit("/", 1)[0],
     id="H6",
     title="Dupuit dam with a seepage face",
-    error="relative error of the flow through the dam",
-    reference="q = k (h1^2 - h2^2)/(2 L) = 0.600 m2/d, exact (Charny 1951)",
+    error="relative error of the flow through the dam with its fringe",
+    reference="q = k (h1^2 - h2^2)/(2 L) = 0.600 m2/d, exact (Charny 1951), and what the fringe carries",
 )
 
 
-def run(name, spacing, alpha, more=""):
-    """Run the dam, check that its start is steady, and return Result and relative error of the flow."""
-    result = case.run(
-        "dupuit.nml",
-        [("spacing = 0.25", f"spacing = {spacing}{more}"), ("alpha = 100.0", f"alpha = {alpha}")],
-        name=name,
-    )
+def fringe(result):
+    """What the fringe at the outlet adds to the flow [m2/d], by the pressure of its nodes."""
+    outlet = np.flatnonzero(np.abs(result.nodes[:, 0] - 10.0) < 1e-9)
+    outlet = outlet[np.argsort(result.nodes[outlet, 1])]
+    head = np.minimum(result.field("pore_pressure")[outlet] / 9810.0, 0.0)
+    return 0.5 / 10.0 * np.trapezoid((1 - np.exp(ALPHA * head)) / ALPHA, result.nodes[outlet, 1])
+
+
+def run(name, spacing, more=""):
+    """Run the dam; Result, and relative errors of the flow against that with fringe and Charny's."""
+    result = case.run("dupuit.nml", [("spacing = 0.25", f"spacing = {spacing}{more}")], name=name)
     history = result.history()
     inward, outward = history["water_in"][-1], history["water_out"][-1]
     print(f"     {name}: in {inward:.6f} m2/d, out {outward:.6f} m2/d")
@@ -43,7 +53,7 @@ def run(name, spacing, alpha, more=""):
         right = np.abs(result.nodes[:, 0] - 10) < 1e-9
         top = np.max(result.nodes[right & (result.field("pore_pressure") > -1e-3), 1])
         case.check_true(f"the seepage face ends between the reservoirs, {name}: {top} m", 1.25 <= top <= 4.0)
-    return result, abs(inward / EXACT - 1)
+    return result, abs(inward / (EXACT + fringe(result)) - 1), abs(inward / EXACT - 1)
 
 
 def water_table(result):
@@ -58,23 +68,29 @@ def water_table(result):
     return columns, np.array(heights)
 
 
-water = []
-for series, more, quick in (
-    ("grid", "", 0.25),
-    ("nodes perturbed by 30 %", " perturbation = 0.3", 0.5),
-):
-    for spacing in (1.0, 0.5, 0.25) if case.full else (quick,):
-        result, error = run(f"{series.split()[0]}_{spacing}", spacing, 25 / spacing, more)
-        case.study(series, result, spacing, error)
+water, charny = [], {}
+SERIES = {"grid": "grid", **{f"nodes perturbed by 30 %, seed {seed}": "perturbed" for seed in (1, 2, 3)}}
+for series in SERIES if case.full else list(SERIES)[:2]:
+    kind = SERIES[series]
+    more = "" if kind == "grid" else f" perturbation = 0.3 seed = {series.split()[-1]}"
+    spacings = (1.0, 0.5, 0.25) if case.full else (0.25,) if kind == "grid" else (0.5,)
+    for spacing in spacings:
+        result, error, against_charny = run(f"{kind}_{spacing}", spacing, more)
+        curve = series if kind == "grid" else "nodes perturbed by 30 %, worst of 3 seeds"
+        case.study(series, result, spacing, error, curve=curve)
         water.append(abs(float(result.summary["water_error"])))
+        if spacing == spacings[-1]:
+            charny[kind] = max(against_charny, charny.get(kind, 0.0))
         if series == "grid":
             table = water_table(result)
-    case.target(f"error of the flow, {series}, spacing {spacing} m", error, 0.01, "the accuracy asked for")
+for kind, error in charny.items():
+    case.target(f"error of the flow, {kind}, finest spacing", error, 0.01, "H6", asked=True)
 if case.full:
-    fringe = spacing / 25
     case.note(
-        f"The fringe of {fringe * 100:g} cm may carry up to {0.5 * 4 * fringe / 10 / EXACT:.2%} of the flow, "
-        "which the formula leaves out: most of the error on the grid."
+        "On the grid the sum over the verticals holds to round-off at every spacing, since fluxes are "
+        f"differences of the matric flux potential: the fringe, {fringe(result) / EXACT:.2%} of the flow, is "
+        "all that separates it from Charny's. On perturbed nodes the error is that of their chance, of "
+        "either sign, and falls with the spacing."
     )
 case.target(
     "largest water error of all runs",

@@ -143,5 +143,5 @@ for name, ratio in LEVELS.items():
             limit = 0.05 if ratio == 0 else 0.10
             case.target(f"square, {name}, three lowest omega^2", error, limit, "required, 21 x 21 nodes")
 
-case.picture("Pulses after 0.02 s", "x in m", "displacement in micrometres", curves)
+case.picture("Pulses after 0.02 s", "x [m]", "Displacement [µm]", curves)
 sys.exit(case.verdict())

@@ -95,7 +95,7 @@ def bookkeeping(result):
 
 
 def in_a_study(levels, spacing, result):
-    """A row of the study, of the picture over seconds, and the criterion printed; returns the factor."""
+    """A row of the study, a point of the picture over seconds; returns the factor."""
     factor = factor_of(result)
     case.study(levels, result, spacing, abs(factor / CHARTS - 1))
     print(f"     F = {factor:.4f} in {result.summary['factor_trials']} trials")
@@ -105,7 +105,7 @@ def in_a_study(levels, spacing, result):
 
 # Both levels at the spacing of all that follows, and with --full at others.
 MESHES = {"one level": (0.9, 0.64, 0.45, 0.32), "two levels, ell = 1.4 m": (0.45, 0.32, 0.25)}
-meshes, factor = {}, {}
+meshes, factor, criterion = {}, {}, {}
 first = case.run("slope.nml", name="first")
 bookkeeping(first)
 for levels, spacings in MESHES.items():
@@ -113,7 +113,7 @@ for levels, spacings in MESHES.items():
         result = reduce("mesh", levels, spacing, steps=10000 if spacing > 0.4 else 50000)
         found = in_a_study(levels, spacing, result)
         if spacing == 0.45:
-            factor[levels] = found
+            factor[levels], criterion[levels] = found, result.summary["factor_criterion"]
             case.target(
                 f"factor of safety, {levels}, h = 0.45 m",
                 found,
@@ -131,6 +131,7 @@ case.check(
 )
 if case.full:
     values = {levels: [row[2] for row in rows] for levels, rows in meshes.items()}
+    seconds = [row[1] for rows in meshes.values() for row in rows]
     case.target(
         f"mesh-converged factor of safety, {two}, h = 0.25 m",
         values[two][-1],
@@ -154,7 +155,7 @@ if case.full:
                 levels: ([row[1] for row in rows], [row[2] for row in rows], "o-")
                 for levels, rows in meshes.items()
             },
-            "charts of Bishop & Morgenstern": ([0.3, 60.0], [CHARTS, CHARTS], "k:"),
+            "charts of Bishop & Morgenstern": ([min(seconds), max(seconds)], [CHARTS, CHARTS], "k:"),
         },
         log_x=True,
     )
@@ -169,6 +170,7 @@ if case.full:
 LOOSE = ("tolerance", 1000, {"tolerance": "1.0e-2"})
 others, rows, curves = [], [], {}
 for levels in LEVELS if case.full else (one,):
+    rows.append([levels, "as in the deck", "1", f"{factor[levels]:.4f}", "-", criterion[levels]])
     for what, times, change in [*THRESHOLDS, LOOSE]:
         other = reduce(f"{what} times {times:g}", levels, **change)
         others.append(other)
@@ -223,7 +225,7 @@ unit = 20.0e3 * 10.0**2 / 1.0e8  # gamma H^2/E [m]
 case.picture(
     "Displacement of the trials of all these runs",
     "Factor that divides the strength [-]",
-    "Largest displacement over gamma H²/E [-]",
+    "Displacement E u/(gamma H²) [-]",
     {
         "stands": (stood[0], stood[1] / unit, "o"),
         "fails (where the trial ended)": (fell[0], fell[1] / unit, "x"),

@@ -95,7 +95,11 @@ case.picture(
             s: ([seconds[s, h] for h in SERIES[s][1]], [found[s, h] for h in SERIES[s][1]], "o-")
             for s in SERIES
         },
-        "charts of Bishop & Morgenstern": ([0.3, 60.0], [CHARTS, CHARTS], "k:"),
+        "charts of Bishop & Morgenstern": (
+            [min(seconds.values()), max(seconds.values())],
+            [CHARTS, CHARTS],
+            "k:",
+        ),
     },
     log_x=True,
 )

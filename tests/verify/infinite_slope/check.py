@@ -269,8 +269,8 @@ if case.full:
     )
     case.note(
         f"With H1, S3 gives a time to failure: the closed form {exact_hours:.2f} h, on a plane {slip:.2f} m "
-        f"deep; TALUS {found_hours:.2f} h with {rows} rows. In a storm with the soil in motion the layer "
-        "lasts longer (14.1 h with 48 equal rows), since what dilates takes suction up."
+        f"deep; TALUS {found_hours:.2f} h with {rows} rows. Tried: in a storm with the soil in motion it "
+        "lasts longer, 14.1 h with 48 equal rows, since what dilates takes suction up."
     )
 case.picture("Factor of safety over time of rain", "Time of rain [h]", "Factor of safety [-]", curves)
 sys.exit(case.verdict())

@@ -47,7 +47,7 @@ for rows in (26, 51, 101, 201) if case.full else (101,):
     found = errors(results[rows])
     case.study("two columns of nodes", results[rows], spacing, max(found.values()))
     print("     error at " + ", ".join(f"{t} s {e:.4%}" for t, e in found.items()))
-case.target("error with 101 rows", max(errors(results[101]).values()), 0.01, "the accuracy asked for")
+case.target("error with 101 rows", max(errors(results[101]).values()), 0.01, "H5", asked=True)
 case.target(
     "largest water error of all runs",
     max(abs(float(result.summary["water_error"])) for result in results.values()),

@@ -17,7 +17,7 @@ case = Case(
     reference="conservation of water; rain ponds at zero pressure",
 )
 worst = {}
-for deck, catch in (("column.nml", 0.02), ("slope.nml", 7.0)):
+for deck, catch, spacing in (("column.nml", 0.02, 0.02), ("slope.nml", 7.0, 0.2)):
     result = case.run(deck)
     history = result.history()
     fallen = 0.09 * catch
@@ -27,6 +27,7 @@ for deck, catch in (("column.nml", 0.02), ("slope.nml", 7.0)):
         f"{result.summary['wall_seconds_seepage']} s in seepage"
     )
     worst[deck] = np.max(np.abs(history["water_error"]))
+    case.study(deck.removesuffix(".nml"), result, spacing, worst[deck])
     hours = history["time"] / 3600
     case.picture(
         f"Water in and off the {deck.removesuffix('.nml')}",

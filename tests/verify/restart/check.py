@@ -86,13 +86,15 @@ SECOND = """&soil
   plasticity = 'drucker_prager'  cohesion = 6.0e3  friction_angle = 25.0
 /
 """
-for deck, first, what in (
-    ("soil.nml", 2, "soil that softens and breaks"),
-    ("seepage.nml", 1, "seepage with ponding"),
-    ("coupled.nml", 2, "coupled soil that breaks"),
+for deck, first, what, spacing in (
+    ("soil.nml", 2, "soil that softens and breaks", 0.3),
+    ("seepage.nml", 1, "seepage with ponding", 0.05),
+    ("coupled.nml", 2, "coupled soil that breaks", 0.6),
 ):
     whole, head, tail = split(deck, first)
     case.target(f"{what}: split run against whole run", difference(whole, tail), 0.0, BITS)
+    for part, run in (("in one piece", whole), ("the second part", tail)):
+        case.study(f"{what}, {part}", run, spacing, difference(whole, run))
     case.check_true(
         f"{what}: the second run tells where it started from, and counts its own steps",
         tail.summary["started_from_snapshot"] == head.snapshots()[-1]
@@ -118,8 +120,8 @@ for deck, first, what in (
         )
         case.picture(
             "Kinetic energy of the push and the slide",
-            "time [s]",
-            "kinetic energy [J/m]",
+            "Time [s]",
+            "Kinetic energy [J/m]",
             {
                 "in one run": (history["time"], history["energy_kinetic"]),
                 "second run": (rest["time"], rest["energy_kinetic"], "--"),

@@ -84,12 +84,12 @@ for spacing in (0.2, 0.1, 0.05) if case.full else (0.1,):
                 curve.append((steps, error, first_order(start, steps)))
 case.check_true("the block had yielded somewhere", result.history()["energy_plastic"].max() > 0.0)
 for (what, steps), value in worst.items():
-    case.target(f"{what}, {steps}", value, LIMIT[what], "round-off of positions, see check.py")
+    case.target(f"{what}, {steps}", value, LIMIT[what], "round-off of positions, see check.py", asked=True)
 steps, ours, other = np.array(curve).T
 case.picture(
     "Stress error after a turn of 90 degrees",
-    "number of steps",
-    "relative error",
+    "Number of steps [-]",
+    "Relative error [-]",
     {"TALUS": (steps, ours, "o-"), "Jaumann rate at the start of the step": (steps, other, "s--")},
     log_x=True,
     log_y=True,

@@ -213,8 +213,7 @@ contains
     if (law%damage%driver /= driver_none) then
       do i = 1, n
         if (.not. det_mid(i) > 0.0_dp) cycle
-        call wear(law, volume(i), before(i, :), strain(i, :), effective(i, :), history(i, :), &
-                  old(i, :), stress(i, :))
+        call wear(law, i, volume(i), before, strain, effective, history, old, stress)
         stiffness_scale(i) = stiffness_scale(i)*(1.0_dp - history(i, history_damage))
       end do
     end if
@@ -256,28 +255,32 @@ contains
   !> Damage of a point, the stress it leaves, and the work it dissipates. Both works follow from
   !! the trapezoidal work 1/2 (sigma_old + sigma_new) : d(eps), which they close exactly:
   !! work = change of the stored energy + plastic work + damage work.
-  pure subroutine wear(law, volume, before, strain, effective, history, old, stress)
+  pure subroutine wear(law, i, volume, before, strain, effective, history, old, stress)
     type(soil_law_t), intent(in) :: law
-    real(dp), intent(in) :: volume       !! J in the middle of the step [-]
-    real(dp), intent(in) :: before(4)    !! undamaged stress before, turned [Pa]
-    real(dp), intent(in) :: strain(4)    !! total strain [-]
-    real(dp), intent(in) :: effective(4) !! undamaged stress after [Pa]
-    real(dp), intent(inout) :: history(history_size)
-    real(dp), intent(inout) :: old(4)    !! damaged stress before, turned, where damaged [Pa]
-    real(dp), intent(inout) :: stress(4) !! damaged stress after, where damaged [Pa]
-    real(dp) :: part(4), d_old
+    integer, intent(in) :: i       !! the point
+    real(dp), intent(in) :: volume !! J in the middle of the step [-]
+    real(dp), intent(in) :: before(soil_points,4)    !! undamaged stress before, turned [Pa]
+    real(dp), intent(in) :: strain(soil_points,4)    !! total strain [-]
+    real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress after [Pa]
+    real(dp), intent(inout) :: history(soil_points,history_size)
+    real(dp), intent(inout) :: old(soil_points,4)    !! damaged stress before, turned [Pa]
+    real(dp), intent(inout) :: stress(soil_points,4) !! damaged stress after [Pa]
+    real(dp), dimension(4) :: was, now, total, part
+    real(dp) :: d_old
 
-    d_old = history(history_damage)
-    call damage_advance(law%damage, strain, history(history_eqps), history(history_kappa), &
-      history(history_damage))
-    if (.not. history(history_damage) > 0.0_dp) return
-    call damage_part(law%damage%split, effective, part)
-    stress = effective - history(history_damage)*part
-    call damage_part(law%damage%split, before, part)
-    old = before - d_old*part
-    history(history_damage_work) = history(history_damage_work) + volume &
-      *damage_dissipation(law%damage, law%elastic, before, d_old, effective, &
-      history(history_damage))
+    was = before(i, :)
+    now = effective(i, :)
+    total = strain(i, :)
+    d_old = history(i, history_damage)
+    call damage_advance(law%damage, total, history(i, history_eqps), history(i, history_kappa), &
+      history(i, history_damage))
+    if (.not. history(i, history_damage) > 0.0_dp) return
+    call damage_part(law%damage%split, now, part)
+    stress(i, :) = now - history(i, history_damage)*part
+    call damage_part(law%damage%split, was, part)
+    old(i, :) = was - d_old*part
+    history(i, history_damage_work) = history(i, history_damage_work) + volume &
+      *damage_dissipation(law%damage, law%elastic, was, d_old, now, history(i, history_damage))
   end subroutine wear
 
   !> Add the plastic work: none where the return left the trial stress as it was.
@@ -322,12 +325,15 @@ contains
     real(dp), intent(in) :: d(soil_points)           !! damage [-]; not used by soil without
     real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress [Pa]
     real(dp), intent(inout) :: energy(n)             !! [J/m3]
+    real(dp) :: point(4)
     integer :: i
 
     call elastic_energies(law%elastic, n, effective, energy)
     if (law%damage%driver == driver_none) return
     do i = 1, n
-      if (d(i) > 0.0_dp) energy(i) = damage_stored(law%damage, law%elastic, effective(i, :), d(i))
+      if (.not. d(i) > 0.0_dp) cycle
+      point = effective(i, :)
+      energy(i) = damage_stored(law%damage, law%elastic, point, d(i))
     end do
   end subroutine soil_stored_energies
 

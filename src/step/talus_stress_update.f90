@@ -187,7 +187,7 @@ contains
       turned(i, :) = before(j, :)
       trial(i, :) = effective(j, :)
       if (allocated(state%strain)) total(i, :) = strain(j, :)
-      history(i, :kept) = state%history(:, first+j-1)
+      if (kept > 0) history(i, :kept) = state%history(:, first+j-1)
       history(i, kept+1:) = 0.0_dp
     end do
     call soil_returns(law, m, middle, volume, pull, wet, turned, total, trial, history, &

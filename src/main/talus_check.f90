@@ -16,7 +16,7 @@ module talus_check
   use talus_audit, only: audit_load
   use talus_coupling, only: coupling_needed
   use talus_timer, only: timer_now, timer_seconds
-  use talus_cost, only: cost_t, cost_of
+  use talus_cost, only: cost_t, cost_of, snapshots_of, snapshot_bytes, restart_bytes
   use talus_seepage_stable, only: seepage_step_stable
   use talus_spectrum, only: spectrum_frequencies, spectrum_rates, spectrum_most_nodes
   implicit none
@@ -26,9 +26,23 @@ module talus_check
   !> Steps that are timed on a copy, to estimate the run time.
   integer, parameter :: trial_steps = 10
   !> Sub-steps of the water after which the trial is cut short.
-  integer, parameter :: trial_seepage_steps = 200
+  integer(i8), parameter :: trial_seepage_steps = 200_i8
+  !> And the seconds after which it ends with the present step of the storm's clock.
+  real(dp), parameter :: trial_seconds = 3.0_dp
   !> What looks at the step, audits and output add to the steps.
   real(dp), parameter :: overhead = 1.5_dp
+  !> Soil steps of the search for the time of a failure, for each halving of the storm's step.
+  real(dp), parameter :: search_steps = 1500.0_dp
+  !> Output above which a warning tells how to write less.
+  real(dp), parameter :: many_snapshots = 1.0e3_dp, many_bytes = 1.0e10_dp
+
+  !> Sum of all stages.
+  type :: estimate_t
+    real(dp) :: total = 0.0_dp     !! time of those that run in any case [s]
+    real(dp) :: slide = 0.0_dp     !! time that a failure adds [s]
+    real(dp) :: snapshots = 0.0_dp
+    real(dp) :: bytes = 0.0_dp     !! written
+  end type estimate_t
 
 contains
 
@@ -38,23 +52,28 @@ contains
     logical, intent(in) :: spectrum !! also all eigenvalues, of a small model
     type(status_t), intent(inout) :: status
     type(session_t) :: session
-    real(dp) :: total, slide
+    type(estimate_t) :: estimate
     integer :: i
 
     call run_prepare(deck, session, status)
     if (status_failed(status)) return
     write (output_unit, '(a)') deck%resolved
     call print_model(session)
-    total = timer_seconds(session%timer, 'set_up')
-    slide = 0.0_dp
+    estimate%total = timer_seconds(session%timer, 'set_up')
     do i = 1, size(deck%stage)
-      call print_stage(session, i, spectrum, total, slide, status)
+      call print_stage(session, i, spectrum, estimate, status)
       if (status_failed(status)) return
     end do
-    write (output_unit, '(/,2a)') 'estimated run time        ', text_of(total, 3)// &
+    write (output_unit, '(/,2a)') 'estimated run time        ', text_of(estimate%total, 3)// &
       ' s on this machine, within a factor of about 3'
-    if (slide > 0.0_dp) write (output_unit, '(2a)') '  if a storm fails        ', &
-      text_of(slide, 3)//' s more, and the search for the time of failure'
+    if (estimate%slide > 0.0_dp) write (output_unit, '(2a)') '  if a storm fails        ', &
+      text_of(estimate%slide, 3)//' s more, with the search for the time of failure'
+    write (output_unit, '(2a)') 'output                    ', text_of(ceiling(estimate%snapshots, i8))// &
+      ' snapshots at most, '//text_of(estimate%bytes*1.0e-6_dp, 3)//' MB on disk'
+    if (estimate%snapshots > many_snapshots .or. estimate%bytes > many_bytes) &
+      write (output_unit, '(a)') &
+      '  warning: that much takes long to write; raise &output snapshot_interval or lower '// &
+      '&stage snapshots'
   end subroutine check_deck
 
   !> Size and active parts.
@@ -99,7 +118,8 @@ contains
 
     cost = cost_of(session)
     write (output_unit, '(5a)') 'memory                    ', megabytes(cost%total), ', ', &
-      text_of(int(cost%total/int(session%disc%n, i8))), ' bytes a node'
+      text_of(int(cost%total/int(session%disc%n, i8))), &
+      ' bytes a node; the program itself takes about 20 MB more'
     call line('nodes and cells', cost%cells)
     call line('first level', cost%first)
     call line('second level', cost%second)
@@ -138,49 +158,84 @@ contains
     write (output_unit, '(2a)') label, trim(merge('on ', 'off', active))
   end subroutine part
 
-  !> Steps and estimated time of one stage, from a few trial steps on a copy of the state.
-  subroutine print_stage(session, number, spectrum, total, slide, status)
+  !> Steps, estimated time and output of one stage, from a few trial steps on a copy of the state.
+  subroutine print_stage(session, number, spectrum, all_stages, status)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
-    real(dp), intent(inout) :: total !! time of the stages so far [s]
-    real(dp), intent(inout) :: slide !! time of those that a failure leads to [s]
+    type(estimate_t), intent(inout) :: all_stages !! those so far
     type(status_t), intent(inout) :: status
-    real(dp) :: each, steps, estimate
+    real(dp) :: estimate, looks
 
     associate (stage => session%deck%stage(number))
       write (output_unit, '(/,5a)') 'stage ', stage%name, ' (', stage%kind, ', '//stage%solve//')'
       call setup_conditions(session%deck, session%disc, stage%name, session%conditions, status)
       if (status_failed(status)) return
       estimate = 0.0_dp
-      if (stage%solve /= 'seepage') then
-        session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
-          .not. (stage%kind == 'storm' .and. coupling_needed(session%ground))
-        session%motion%local = stage%damping
-        session%motion%consistent = stage%mass == 'consistent'
-        call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
-                            stage%mass_scaling, 1.0_dp, session%motion, session%work)
-        write (output_unit, '(2a)') '  stable soil step        ', &
-          text_of(session%motion%step, 4)// &
-          trim(merge(' s of relaxation (scaled masses)', ' s                              ', &
-                     stage%mass_scaling))
-        if (spectrum) call print_spectrum(session)
-        session%motion%step = stage%step_safety*session%motion%step
-        each = time_of_a_step(session)
-        steps = typical_steps(session, number)
-        write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
-        estimate = overhead*steps*each
-      end if
+      if (stage%solve /= 'seepage') &
+        call print_soil(session, number, spectrum, estimate, all_stages%slide)
       if (stage%solve /= 'soil') call print_seepage(session, number, spectrum, estimate)
       write (output_unit, '(2a)') '  estimated run time      ', text_of(estimate, 3)//' s'// &
         trim(merge(', if it is reached', '                  ', stage%only_after_failure))
       if (stage%only_after_failure) then
-        slide = slide + estimate
+        all_stages%slide = all_stages%slide + estimate
       else
-        total = total + estimate
+        all_stages%total = all_stages%total + estimate
       end if
+      looks = 1.0_dp
+      if (stage%kind == 'storm') looks = stage%duration/stage%storm_step
+      if (stage%kind == 'dynamic') looks = stage%duration/session%motion%step
+      call add_output(session, snapshots_of(session, stage, looks), all_stages)
     end associate
   end subroutine print_stage
+
+  !> Add what a stage writes.
+  subroutine add_output(session, snapshots, all_stages)
+    type(session_t), intent(in) :: session
+    real(dp), intent(in) :: snapshots
+    type(estimate_t), intent(inout) :: all_stages
+
+    all_stages%snapshots = all_stages%snapshots + snapshots
+    all_stages%bytes = all_stages%bytes + snapshots*real(snapshot_bytes(session), dp)
+    if (session%deck%output%restart == 'all') all_stages%bytes = all_stages%bytes &
+      + snapshots*real(restart_bytes(session), dp)
+    if (session%deck%output%restart == 'stages') all_stages%bytes = all_stages%bytes &
+      + real(restart_bytes(session), dp)
+  end subroutine add_output
+
+  !> Steps of the soil and their time, and those of the search when a storm fails.
+  subroutine print_soil(session, number, spectrum, estimate, slide)
+    type(session_t), intent(inout) :: session
+    integer, intent(in) :: number
+    logical, intent(in) :: spectrum
+    real(dp), intent(inout) :: estimate !! of the stage so far [s]
+    real(dp), intent(inout) :: slide    !! what a failure adds [s]
+    real(dp) :: each, steps
+
+    associate (stage => session%deck%stage(number))
+      session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
+        .not. (stage%kind == 'storm' .and. coupling_needed(session%ground))
+      session%motion%local = stage%damping
+      session%motion%consistent = stage%mass == 'consistent'
+      call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
+                          stage%mass_scaling, 1.0_dp, session%motion, session%work)
+      write (output_unit, '(2a)') '  stable soil step        ', &
+        text_of(session%motion%step, 4)// &
+        trim(merge(' s of relaxation (scaled masses)', ' s                              ', &
+                   stage%mass_scaling))
+      if (spectrum) call print_spectrum(session)
+      session%motion%step = stage%step_safety*session%motion%step
+      each = time_of_a_step(session)
+      steps = typical_steps(session, number)
+      write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
+      estimate = overhead*steps*each
+      if (stage%kind /= 'storm' .or. all(session%ground%law%plasticity == 0)) return
+      steps = search_steps*(1.0_dp + log(stage%storm_step/stage%storm_step_minimum)/log(2.0_dp))
+      write (output_unit, '(2a)') '  if it fails, about      ', text_of(steps, 3)// &
+        ' more, to find the time of failure'
+      slide = slide + overhead*steps*each
+    end associate
+  end subroutine print_soil
 
   !> Time of a soil step [s], from a few under load that are taken back.
   real(dp) function time_of_a_step(session) result(each)
@@ -214,7 +269,7 @@ contains
       case ('geostatic')
         steps = 25.0_dp + 7.0_dp*across
       case ('storm')
-        steps = (25.0_dp + across)*stage%duration/stage%storm_step
+        steps = (45.0_dp + across)*stage%duration/stage%storm_step
       case ('strength_reduction')
         ! Next to the factor of safety a trial takes long.
         steps = 100.0_dp*across*(3.0_dp &
@@ -225,15 +280,15 @@ contains
     end associate
   end function typical_steps
 
-  !> Sub-steps of the water and their time, from a trial with the state at the start: one step of
-  !> the storm clock, or a hundredth of a dynamic stage, or as much as some sub-steps reach.
+  !> Sub-steps of the water and their time, from a trial with the soil as it is at the start: as
+  !> far into the stage as some sub-steps and seconds reach.
   subroutine print_seepage(session, number, spectrum, estimate)
     type(session_t), intent(inout) :: session
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
     real(dp), intent(inout) :: estimate !! of the stage so far [s]
-    real(dp) :: began, trial, reached
-    integer(i8) :: before
+    real(dp) :: began, spent, trial, reached, done
+    integer(i8) :: taken
 
     associate (seepage => session%seepage, disc => session%disc, ground => session%ground, &
                state => session%state, stage => session%deck%stage(number))
@@ -247,14 +302,22 @@ contains
         text_of(seepage_step_stable(seepage, disc, ground, state), 6)//' s at the start'
       if (spectrum) call print_rates(session)
       session%last_good = state
-      before = state%seepage_steps
+      done = 0.0_dp
+      taken = 0_i8
       began = timer_now()
-      call seepage_advance(seepage, disc, ground, session%conditions%inlets, 0.0_dp, trial, state, &
-                           trial_seepage_steps, reached)
-      estimate = estimate + (timer_now() - began)*stage%duration/reached
+      spent = 0.0_dp
+      do while (done < 0.999_dp*stage%duration .and. taken < trial_seepage_steps .and. &
+                spent < trial_seconds)
+        call seepage_advance(seepage, disc, ground, session%conditions%inlets, done, &
+          min(trial, stage%duration - done), state, int(trial_seepage_steps - taken), reached)
+        done = done + reached
+        taken = state%seepage_steps - session%last_good%seepage_steps
+        spent = timer_now() - began
+      end do
+      estimate = estimate + spent*stage%duration/done
       write (output_unit, '(2a)') '  seepage steps, about    ', &
-        text_of(real(state%seepage_steps - before, dp)*stage%duration/reached, 3)// &
-        trim(merge(', by the first few', '                  ', reached < 0.999_dp*trial))
+        text_of(real(taken, dp)*stage%duration/done, 3)//', by the first '// &
+        text_of(100.0_dp*done/stage%duration, 2)//' % of the stage'
       state = session%last_good
     end associate
   end subroutine print_seepage

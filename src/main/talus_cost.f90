@@ -1,12 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> Bytes that a run holds, counted from what is allocated.
+!> Bytes that a run holds, counted from what is allocated, and those that it will write.
 module talus_cost
   use talus_kinds, only: dp, i8
+  use talus_deck_types, only: stage_t
   use talus_session, only: session_t
   use talus_state, only: state_t
+  use talus_stage_parts, only: snapshot_interval
   implicit none
   private
-  public :: cost_t, cost_of
+  public :: cost_t, cost_of, snapshots_of, snapshot_bytes, restart_bytes
+
+  !> What HDF5 and XDMF take to describe a snapshot, as measured.
+  integer(i8), parameter :: description_bytes = 20000_i8
 
   !> Bytes of the parts of a run.
   type :: cost_t
@@ -68,6 +73,44 @@ contains
     cost%total = cost%cells + cost%first + cost%second + cost%stabilise + cost%state + cost%step &
       + cost%seepage + cost%matrix
   end function cost_of
+
+  !> Snapshots that a stage writes. It looks whether one is due after each of its `looks` steps.
+  pure real(dp) function snapshots_of(session, stage, looks) result(snapshots)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: looks
+
+    snapshots = 1.0_dp
+    if (stage%kind == 'geostatic' .or. stage%kind == 'strength_reduction') return
+    ! At the start, then one for each interval; the last of them is that of the end.
+    snapshots = 1.0_dp + max(1.0_dp, min(looks, stage%duration/snapshot_interval(session, stage)))
+  end function snapshots_of
+
+  !> Bytes of the fields of one snapshot.
+  pure integer(i8) function snapshot_bytes(session) result(total)
+    type(session_t), intent(in) :: session
+    integer :: numbers
+
+    numbers = 0
+    ! Displacement, velocity, stress, strain; plastic strain; damage.
+    if (session%soil_moves) then
+      numbers = numbers + 12
+      if (allocated(session%state%history)) numbers = numbers + 1
+      if (any(session%ground%law%damage%driver /= 0)) numbers = numbers + 1
+    end if
+    ! Pressure, saturation, suction, porosity and velocity.
+    if (session%ground%wet) numbers = numbers + 6
+    total = 8_i8*int(numbers, i8)*int(session%disc%n, i8) + description_bytes
+  end function snapshot_bytes
+
+  !> Bytes of all of the state, as `&output restart` saves it.
+  pure integer(i8) function restart_bytes(session) result(total)
+    type(session_t), intent(in) :: session
+
+    ! The fastest mode goes with the soil.
+    total = state_bytes(session%state)
+    if (session%soil_moves) total = total + 16_i8*int(session%disc%n, i8)
+  end function restart_bytes
 
   !> Bytes of a state.
   pure integer(i8) function state_bytes(state) result(total)

@@ -6,6 +6,7 @@ test_odd_decks.py PROGRAM
 """
 
 import csv
+import math
 import pathlib
 import subprocess
 import sys
@@ -71,6 +72,13 @@ def run(*groups: tuple[str, dict], word: str = "run") -> Outcome:
             [PROGRAM, word, "deck.nml"], cwd=folder, capture_output=True, timeout=120, check=False
         )
         return Outcome(folder / "results", result)
+
+
+def check(*groups: tuple[str, dict]) -> dict[str, str]:
+    """What `talus check` estimates: the rest of each line by its label, the last one of a label."""
+    report = run(*groups, word="check").report
+    report = report[report.index("What will be active") :]
+    return {line[:26].strip(): line[26:] for line in report.splitlines()}
 
 
 def model(soil: dict = ELASTIC, box: dict = BOX, spacing: float = 0.5) -> list[tuple[str, dict]]:
@@ -205,7 +213,7 @@ class OddDecks(unittest.TestCase):
         groups = [item for item in rainy() if item[0] != "initial"]
         outcome = run(*groups, ("initial", table), ("stage", {**STORM, "solve": "seepage"}), word="check")
         self.assertEqual(outcome.code, 0, outcome.message)
-        self.assertRegex(outcome.report, r"seepage steps, about    \S+, by the first few")
+        self.assertRegex(outcome.report, r"seepage steps, about    \S+, by the first \S+e-5 % of")
 
     def test_every_probe_has_its_columns(self):
         points = [0.01 * i for i in range(201)]
@@ -227,6 +235,28 @@ class OddDecks(unittest.TestCase):
         self.stands(outcome)
         self.assertIn("warning: the soil moved 4.9", outcome.message)
         self.assertIn("further than the model is wide and high (2.828 m)", outcome.summary["warning"])
+
+    def test_estimate_of_the_water_alone(self):
+        """No soil, and the steps of the water within a factor of three: its first ones are the shortest."""
+        groups = rainy(box={**BOX, "width": 1.0, "height": 20.0})
+        groups += [("stage", {**STORM, "solve": "seepage", "duration": 72000.0, "storm_step": 3600.0})]
+        told, outcome = check(*groups), run(*groups)
+        self.stands(outcome)
+        self.assertEqual((told["soil"], told["stabilisation"]), ("off", "off"))
+        steps = float(told["seepage steps, about"].split(",")[0])
+        self.assertLess(abs(math.log(steps / float(outcome.summary["seepage_steps"]))), math.log(3.0))
+        self.assertIn("the program itself takes about 20 MB more", told["memory"])
+
+    def test_estimate_of_the_search_and_of_output(self):
+        """A slide step of milliseconds and a snapshot at each: said before it fills the disk."""
+        stages = [("stage", GRAVITY), ("stage", STORM), ("stage", {**DYNAMIC, "duration": 20.0})]
+        told = check(*rainy(PLASTIC), *stages)
+        self.assertRegex(told["if it fails, about"], r"1\.05e4 more")
+        self.assertRegex(told["output"], r"^\d+ snapshots at most, [\d.]+ MB on disk")
+        self.assertNotIn("warning: that much takes", told)
+        told = check(*rainy(PLASTIC), *stages, ("output", {"snapshot_interval": 1e-6}))
+        self.assertGreater(int(told["output"].split()[0]), 1000)
+        self.assertIn("warning: that much takes", told)
 
     def test_a_missing_boundary_is_told_before_anything_is_written(self):
         outcome = run(

@@ -79,13 +79,19 @@ case.remedy(
 )
 # How much strength is in the stabilisation: the factor of safety of the standing slope after 16 h.
 STORM = ("duration = 129600.0", "duration = 57600.0")
-SLIDE = "name = 'slide'\n  kind = 'dynamic'\n  only_after_failure = .true.\n  solve = 'soil'\n  duration = 15.0"
+SLIDE = (
+    "name = 'slide'\n  kind = 'dynamic'\n  only_after_failure = .true.\n  solve = 'soil'\n  duration = 15.0"
+)
 FACTOR = (SLIDE, "name = 'factor'\n  kind = 'strength_reduction'\n  factor_tolerance = 0.002")
 
 
 def factor(smoothing, stabilisation):
     """Factor of safety after 16 h of rain."""
-    replace = [("levels = 2\n  length = 1.1", f"{smoothing}\n  stabilisation = {stabilisation}"), STORM, FACTOR]
+    replace = [
+        ("levels = 2\n  length = 1.1", f"{smoothing}\n  stabilisation = {stabilisation}"),
+        STORM,
+        FACTOR,
+    ]
     summary = case.run("case.nml", replace, name=f"factor_{smoothing[9]}_{stabilisation}").summary
     return float(summary["factor_of_safety"])
 
@@ -95,7 +101,12 @@ factors = {
     for level, smoothing in (("one level", "levels = 1"), ("two levels", "levels = 2\n  length = 1.1"))
 }
 for level, (once, twice) in factors.items():
-    case.check(f"factor of safety at 16 h, {level}: change by twice the stabilisation", twice / once - 1, 0.015, "held")
+    case.check(
+        f"factor of safety at 16 h, {level}: change by twice the stabilisation",
+        twice / once - 1,
+        0.015,
+        "held",
+    )
 case.note(
     "Twice the stabilisation misses. What it adds is a little strength: the factor of safety after 16 h goes from "
     + " and ".join(f"{a:.4g} to {b:.4g} at {level}" for level, (a, b) in factors.items())

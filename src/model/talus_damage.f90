@@ -13,7 +13,7 @@ module talus_damage
   implicit none
   private
   public :: damage_t, damage_prepare, damage_driver, damage_law, damage_advance
-  public :: damage_part, damage_parts, damage_degrade, damage_stored
+  public :: damage_part, damage_parts, damage_degrade, damage_stored, damage_energies
 
   integer, parameter, public :: driver_none = 0, driver_energy = 1, driver_mazars = 2, &
     driver_von_mises = 3, driver_plastic_strain = 4
@@ -250,4 +250,23 @@ contains
     part = stress - d*part
     damage_stored = 0.5_dp*elastic_bilinear(elastic, part, stress)
   end function damage_stored
+
+  !> The same at n points of a block.
+  pure subroutine damage_energies(damage, elastic, n, stress, d, energy)
+    type(damage_t), intent(in) :: damage
+    type(elastic_t), intent(in) :: elastic
+    integer, intent(in) :: n
+    real(dp), intent(in) :: stress(soil_points,4) !! undamaged stress s [Pa]
+    real(dp), intent(in) :: d(soil_points)        !! damage [-]
+    real(dp), intent(inout) :: energy(n)          !! [J/m3]
+    real(dp) :: part(soil_points,4)
+    integer :: c
+
+    call damage_parts(damage%split, n, stress, part)
+    do c = 1, 4
+      part(:n, c) = stress(:n, c) - d(:n)*part(:n, c)
+    end do
+    call elastic_bilinears(elastic, n, part, stress, energy)
+    energy = 0.5_dp*energy
+  end subroutine damage_energies
 end module talus_damage

@@ -14,19 +14,19 @@ module talus_soil_law
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_objective, only: objective_increments, tensors_rotate
   use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energy, &
-    elastic_bilinears
+    elastic_energies, elastic_bilinears
   use talus_drucker_prager, only: cones_t, drucker_prager_returns, secant_shear_ratios
   use talus_strength, only: strength_t, strength_prepare, strength_cones, strength_excess, &
     suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
   use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_degrade, &
-    damage_stored, driver_none, driver_plastic_strain, &
+    damage_stored, damage_energies, driver_none, driver_plastic_strain, &
     split_deviatoric
   implicit none
   private
   public :: soil_law_t, soil_law_prepare, soil_update, soil_trial, soil_excess, soil_returns
-  public :: soil_stored_energy
+  public :: soil_stored_energy, soil_stored_energies
   public :: bishop_factor, bishop_subtract, soil_needs_strain
 
   integer, parameter, public :: plasticity_none = 0, plasticity_drucker_prager = 1
@@ -317,6 +317,21 @@ contains
       soil_stored_energy = elastic_energy(law%elastic, effective)
     end if
   end function soil_stored_energy
+
+  !> The same at n points of a block.
+  pure subroutine soil_stored_energies(law, n, effective, d, energy)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: n
+    real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress [Pa]
+    real(dp), intent(in) :: d(soil_points)           !! damage [-]; not read in soil without
+    real(dp), intent(inout) :: energy(n)             !! [J/m3]
+
+    if (law%damage%driver == driver_none) then
+      call elastic_energies(law%elastic, n, effective, energy)
+    else
+      call damage_energies(law%damage, law%elastic, n, effective, d, energy)
+    end if
+  end subroutine soil_stored_energies
 
   !> Part chi of the pore pressure in the total stress: S_e above, 1 below the water table.
   elemental real(dp) function bishop_factor(suction, saturation)

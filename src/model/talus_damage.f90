@@ -8,11 +8,12 @@ module talus_damage
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_deck
   use talus_text, only: text_of
-  use talus_elastic, only: elastic_t, elastic_bilinear
+  use talus_points, only: soil_points
+  use talus_elastic, only: elastic_t, elastic_bilinear, elastic_bilinears
   implicit none
   private
   public :: damage_t, damage_prepare, damage_driver, damage_law, damage_advance
-  public :: damage_part, damage_dissipation, damage_stored
+  public :: damage_part, damage_parts, damage_degrade, damage_stored, damage_energies
 
   integer, parameter, public :: driver_none = 0, driver_energy = 1, driver_mazars = 2, &
     driver_von_mises = 3, driver_plastic_strain = 4
@@ -151,52 +152,91 @@ contains
     integer, intent(in) :: split       !! one of split_*
     real(dp), intent(in) :: stress(4)  !! undamaged stress [Pa], tension +
     real(dp), intent(out) :: part(4)   !! its degraded part [Pa]
+    real(dp), dimension(soil_points,4) :: whole, degraded
+
+    whole(1, :) = stress
+    call damage_parts(split, 1, whole, degraded)
+    part = degraded(1, :)
+  end subroutine damage_part
+
+  !> The same at n points of a block.
+  pure subroutine damage_parts(split, n, stress, part)
+    integer, intent(in) :: split                   !! one of split_*
+    integer, intent(in) :: n
+    real(dp), intent(in) :: stress(soil_points,4)  !! undamaged stress [Pa], tension +
+    real(dp), intent(inout) :: part(soil_points,4) !! its degraded part [Pa]
     real(dp) :: mean, centre, half, radius, upper, lower, ratio
+    integer :: i
 
     select case (split)
     case (split_deviatoric)
-      mean = (stress(1) + stress(2) + stress(3))/3.0_dp
-      part(1:3) = stress(1:3) - mean
-      part(4) = stress(4)
+      do i = 1, n
+        mean = (stress(i, 1) + stress(i, 2) + stress(i, 3))/3.0_dp
+        part(i, 1) = stress(i, 1) - mean
+        part(i, 2) = stress(i, 2) - mean
+        part(i, 3) = stress(i, 3) - mean
+        part(i, 4) = stress(i, 4)
+      end do
     case (split_tensile)
-      centre = 0.5_dp*(stress(1) + stress(2))
-      half = 0.5_dp*(stress(1) - stress(2))
-      radius = sqrt(half*half + stress(4)*stress(4))
-      upper = 0.5_dp*max(0.0_dp, centre + radius)
-      lower = 0.5_dp*max(0.0_dp, centre - radius)
-      ratio = 0.0_dp
-      if (radius > 0.0_dp) ratio = (upper - lower)/radius
-      part(1) = upper + lower + ratio*half
-      part(2) = upper + lower - ratio*half
-      part(3) = max(0.0_dp, stress(3))
-      part(4) = ratio*stress(4)
+      do i = 1, n
+        centre = 0.5_dp*(stress(i, 1) + stress(i, 2))
+        half = 0.5_dp*(stress(i, 1) - stress(i, 2))
+        radius = sqrt(half*half + stress(i, 4)*stress(i, 4))
+        upper = 0.5_dp*max(0.0_dp, centre + radius)
+        lower = 0.5_dp*max(0.0_dp, centre - radius)
+        ! Zero over the least number where there is no shear.
+        ratio = (upper - lower)/max(radius, tiny(1.0_dp))
+        part(i, 1) = upper + lower + ratio*half
+        part(i, 2) = upper + lower - ratio*half
+        part(i, 3) = max(0.0_dp, stress(i, 3))
+        part(i, 4) = ratio*stress(i, 4)
+      end do
     case default
-      part = stress
+      part(:n, :) = stress(:n, :)
     end select
-  end subroutine damage_part
+  end subroutine damage_parts
 
-  !> Energy released by damage over a step, per current volume [J/m3].
+  !> Degrade n points of a block from damage d_old before to d_new after a step: stresses, stored
+  !> energies, and the energy that damage releases, per current volume.
   !!
   !! The work 1/2 (sigma_old + sigma_new) : d(eps_e) of the damaged stress less the change of
   !! 1/2 (s - D P(s)) : C^-1 : s is exactly 1/2 (D_new P_new : C^-1 : s_old - D_old P_old : C^-1 :
   !! s_new), which tends to dD times the stored energy of the degraded part. With `full` and
   !! `deviatoric` it vanishes while D stands still. The positive part of a stress has no
   !! potential, so that `tensile` may store or release a little when principal axes turn.
-  pure real(dp) function damage_dissipation(damage, elastic, stress_old, d_old, stress_new, d_new)
+  pure subroutine damage_degrade(damage, elastic, n, d_old, d_new, old, new, energy_old, energy_new, &
+    released)
     type(damage_t), intent(in) :: damage
     type(elastic_t), intent(in) :: elastic
-    real(dp), intent(in) :: stress_old(4) !! undamaged stress before, turned with the step [Pa]
-    real(dp), intent(in) :: d_old         !! damage before [-]
-    real(dp), intent(in) :: stress_new(4) !! undamaged stress after [Pa]
-    real(dp), intent(in) :: d_new         !! damage after [-]
-    real(dp) :: part(4)
+    integer, intent(in) :: n
+    real(dp), dimension(soil_points), intent(in) :: d_old, d_new !! damage before and after [-]
+    real(dp), intent(inout) :: old(soil_points,4) !! undamaged stress before in, turned with the
+                                                  !! step; damaged stress out [Pa]
+    real(dp), intent(inout) :: new(soil_points,4) !! undamaged stress after in, damaged out [Pa]
+    real(dp), dimension(soil_points), intent(inout) :: energy_old, energy_new !! stored [J/m3]
+    real(dp), intent(inout) :: released(soil_points) !! [J/m3]
+    real(dp), dimension(soil_points,4) :: whole, other, part
+    real(dp) :: across(soil_points)
+    integer :: c
 
-    call damage_part(damage%split, stress_new, part)
-    damage_dissipation = d_new*elastic_bilinear(elastic, part, stress_old)
-    call damage_part(damage%split, stress_old, part)
-    damage_dissipation = 0.5_dp*(damage_dissipation &
-      - d_old*elastic_bilinear(elastic, part, stress_new))
-  end function damage_dissipation
+    whole(:n, :) = new(:n, :)
+    other(:n, :) = old(:n, :)
+    call damage_parts(damage%split, n, whole, part)
+    call elastic_bilinears(elastic, n, part, other, released)
+    do c = 1, 4
+      new(:n, c) = whole(:n, c) - d_new(:n)*part(:n, c)
+    end do
+    call elastic_bilinears(elastic, n, new, whole, energy_new)
+    call damage_parts(damage%split, n, other, part)
+    call elastic_bilinears(elastic, n, part, whole, across)
+    do c = 1, 4
+      old(:n, c) = other(:n, c) - d_old(:n)*part(:n, c)
+    end do
+    call elastic_bilinears(elastic, n, old, other, energy_old)
+    energy_old(:n) = 0.5_dp*energy_old(:n)
+    energy_new(:n) = 0.5_dp*energy_new(:n)
+    released(:n) = 0.5_dp*(d_new(:n)*released(:n) - d_old(:n)*across(:n))
+  end subroutine damage_degrade
 
   !> Energy stored at a damaged point, 1/2 (s - D P(s)) : C^-1 : s [J/m3].
   pure real(dp) function damage_stored(damage, elastic, stress, d)
@@ -210,4 +250,23 @@ contains
     part = stress - d*part
     damage_stored = 0.5_dp*elastic_bilinear(elastic, part, stress)
   end function damage_stored
+
+  !> The same at n points of a block.
+  pure subroutine damage_energies(damage, elastic, n, stress, d, energy)
+    type(damage_t), intent(in) :: damage
+    type(elastic_t), intent(in) :: elastic
+    integer, intent(in) :: n
+    real(dp), intent(in) :: stress(soil_points,4) !! undamaged stress s [Pa]
+    real(dp), intent(in) :: d(soil_points)        !! damage [-]
+    real(dp), intent(inout) :: energy(n)          !! [J/m3]
+    real(dp) :: part(soil_points,4)
+    integer :: c
+
+    call damage_parts(damage%split, n, stress, part)
+    do c = 1, 4
+      part(:n, c) = stress(:n, c) - d(:n)*part(:n, c)
+    end do
+    call elastic_bilinears(elastic, n, part, stress, energy)
+    energy = 0.5_dp*energy
+  end subroutine damage_energies
 end module talus_damage

@@ -5,7 +5,7 @@
 !! of the strain less the suction strain, return to the cone, raise damage, degrade. The cone is
 !! that of the plastic strain before the step, so the return satisfies it exactly.
 !! Points come in blocks, by component (talus_points): what all of them do are loops that compilers
-!! vectorise; damage is left to the points that have any.
+!! vectorise; the plastic part and damage are left to the points that have any.
 !! In `net` the stress carried is net stress and equals total stress above the water table; in
 !! `bishop` it is effective stress, and bishop_subtract gives the total.
 module talus_soil_law
@@ -20,8 +20,8 @@ module talus_soil_law
     suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
-  use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_part, &
-    damage_dissipation, damage_stored, driver_none, driver_plastic_strain, &
+  use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_degrade, &
+    damage_stored, damage_energies, driver_none, driver_plastic_strain, &
     split_deviatoric
   implicit none
   private
@@ -105,7 +105,8 @@ contains
     integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
     real(dp), dimension(soil_points,4) :: old, new, before, total, trial, damaged
     real(dp) :: record(soil_points,history_size)
-    real(dp), dimension(soil_points) :: suction, suction_was, wet, det_mid, volume, det_new, left
+    real(dp), dimension(soil_points) :: suction, suction_was, wet, det_mid, volume, det_new, left, &
+      energy_old, energy_new
     integer :: code(soil_points)
 
     old(1, :) = f_old
@@ -120,7 +121,7 @@ contains
                     det_new)
     volume(1) = 0.5_dp*(volume(1) + det_new(1))
     call soil_returns(law, 1, det_mid, volume, suction, wet, before, total, trial, record, damaged, &
-                      left, code)
+                      left, energy_old, energy_new, code)
     effective = trial(1, :)
     strain = total(1, :)
     history = record(1, :)
@@ -187,7 +188,7 @@ contains
 
   !> Second half of the update, at n points: return to the cone, raise damage, degrade.
   pure subroutine soil_returns(law, n, det_mid, volume, suction, saturation, before, strain, &
-    effective, history, stress, stiffness_scale, ierr)
+    effective, history, stress, stiffness_scale, energy_old, energy_new, ierr)
     type(soil_law_t), intent(in) :: law              !! prepared
     integer, intent(in) :: n
     real(dp), intent(in) :: det_mid(soil_points)     !! of soil_trial
@@ -200,6 +201,8 @@ contains
     real(dp), intent(inout) :: history(soil_points,history_size) !! see history_*
     real(dp), intent(inout) :: stress(soil_points,4) !! damaged, without pore pressure [Pa]
     real(dp), intent(inout) :: stiffness_scale(soil_points) !! stiffness left over elastic [-]
+    real(dp), dimension(soil_points), intent(inout) :: energy_old, energy_new !! stored energy before
+                                                     !! and after [J/m3]; set only with damage
     integer, intent(inout) :: ierr(soil_points)      !! one of soil_ok, soil_inverted, ...
     real(dp) :: trial(soil_points,4), old(soil_points,4)
     integer :: i
@@ -210,13 +213,8 @@ contains
       saturation, effective, history, stiffness_scale)
     stress(:n, :) = effective(:n, :)
     old(:n, :) = before(:n, :)
-    if (law%damage%driver /= driver_none) then
-      do i = 1, n
-        if (.not. det_mid(i) > 0.0_dp) cycle
-        call wear(law, i, volume(i), before, strain, effective, history, old, stress)
-        stiffness_scale(i) = stiffness_scale(i)*(1.0_dp - history(i, history_damage))
-      end do
-    end if
+    if (law%damage%driver /= driver_none) call wear(law, n, volume, strain, history, old, stress, &
+      stiffness_scale, energy_old, energy_new)
     if (law%plasticity == plasticity_drucker_prager) call plastic_work(law, n, volume, trial, &
       effective, old, stress, history)
     do i = 1, n
@@ -252,35 +250,37 @@ contains
     call secant_shear_ratios(n, law%elastic%shear, root, history(:, history_eqps), left)
   end subroutine return_to_cone
 
-  !> Damage of a point, the stress it leaves, and the work it dissipates. Both works follow from
+  !> Damage of the step, the stress it leaves, and the work it dissipates. Both works follow from
   !! the trapezoidal work 1/2 (sigma_old + sigma_new) : d(eps), which they close exactly:
   !! work = change of the stored energy + plastic work + damage work.
-  pure subroutine wear(law, i, volume, before, strain, effective, history, old, stress)
+  pure subroutine wear(law, n, volume, strain, history, old, stress, left, energy_old, energy_new)
     type(soil_law_t), intent(in) :: law
-    integer, intent(in) :: i       !! the point
-    real(dp), intent(in) :: volume !! J in the middle of the step [-]
-    real(dp), intent(in) :: before(soil_points,4)    !! undamaged stress before, turned [Pa]
+    integer, intent(in) :: n
+    real(dp), intent(in) :: volume(soil_points)      !! J in the middle of the step [-]
     real(dp), intent(in) :: strain(soil_points,4)    !! total strain [-]
-    real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress after [Pa]
     real(dp), intent(inout) :: history(soil_points,history_size)
-    real(dp), intent(inout) :: old(soil_points,4)    !! damaged stress before, turned [Pa]
-    real(dp), intent(inout) :: stress(soil_points,4) !! damaged stress after [Pa]
-    real(dp), dimension(4) :: was, now, total, part
-    real(dp) :: d_old
+    real(dp), intent(inout) :: old(soil_points,4)    !! stress before, turned: undamaged in,
+                                                     !! damaged out [Pa]
+    real(dp), intent(inout) :: stress(soil_points,4) !! stress after: the same
+    real(dp), intent(inout) :: left(soil_points)     !! stiffness left over elastic [-]
+    real(dp), dimension(soil_points), intent(inout) :: energy_old, energy_new !! stored [J/m3]
+    real(dp), dimension(soil_points) :: d_old, released
+    real(dp) :: total(4)
+    integer :: i
 
-    was = before(i, :)
-    now = effective(i, :)
-    total = strain(i, :)
-    d_old = history(i, history_damage)
-    call damage_advance(law%damage, total, history(i, history_eqps), history(i, history_kappa), &
-      history(i, history_damage))
-    if (.not. history(i, history_damage) > 0.0_dp) return
-    call damage_part(law%damage%split, now, part)
-    stress(i, :) = now - history(i, history_damage)*part
-    call damage_part(law%damage%split, was, part)
-    old(i, :) = was - d_old*part
-    history(i, history_damage_work) = history(i, history_damage_work) + volume &
-      *damage_dissipation(law%damage, law%elastic, was, d_old, now, history(i, history_damage))
+    d_old(:n) = history(:n, history_damage)
+    total = 0.0_dp
+    do i = 1, n
+      if (soil_needs_strain(law)) total = strain(i, :)
+      call damage_advance(law%damage, total, history(i, history_eqps), history(i, history_kappa), &
+        history(i, history_damage))
+    end do
+    call damage_degrade(law%damage, law%elastic, n, d_old, history(:, history_damage), old, stress, &
+                        energy_old, energy_new, released)
+    do i = 1, n
+      history(i, history_damage_work) = history(i, history_damage_work) + volume(i)*released(i)
+      left(i) = left(i)*(1.0_dp - history(i, history_damage))
+    end do
   end subroutine wear
 
   !> Add the plastic work: none where the return left the trial stress as it was.
@@ -319,22 +319,18 @@ contains
   end function soil_stored_energy
 
   !> The same at n points of a block.
-  pure subroutine soil_stored_energies(law, n, d, effective, energy)
+  pure subroutine soil_stored_energies(law, n, effective, d, energy)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: n
-    real(dp), intent(in) :: d(soil_points)           !! damage [-]; not used by soil without
     real(dp), intent(in) :: effective(soil_points,4) !! undamaged stress [Pa]
+    real(dp), intent(in) :: d(soil_points)           !! damage [-]; not read in soil without
     real(dp), intent(inout) :: energy(n)             !! [J/m3]
-    real(dp) :: point(4)
-    integer :: i
 
-    call elastic_energies(law%elastic, n, effective, energy)
-    if (law%damage%driver == driver_none) return
-    do i = 1, n
-      if (.not. d(i) > 0.0_dp) cycle
-      point = effective(i, :)
-      energy(i) = damage_stored(law%damage, law%elastic, point, d(i))
-    end do
+    if (law%damage%driver == driver_none) then
+      call elastic_energies(law%elastic, n, effective, energy)
+    else
+      call damage_energies(law%damage, law%elastic, n, effective, d, energy)
+    end if
   end subroutine soil_stored_energies
 
   !> Part chi of the pore pressure in the total stress: S_e above, 1 below the water table.

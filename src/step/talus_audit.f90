@@ -10,11 +10,10 @@ module talus_audit
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_soil_law, only: soil_stored_energy, stress_bishop, history_damage, &
+  use talus_soil_law, only: soil_stored_energies, stress_bishop, history_damage, &
     history_plastic_work, history_damage_work
   use talus_soil_step, only: motion_t
   use talus_inertia, only: inertia_momentum
-  use talus_elastic, only: elastic_energies
   use talus_sum, only: sum_products
   implicit none
   private
@@ -35,7 +34,7 @@ module talus_audit
   end type energies_t
 
   !> Nodes whose energies are summed by themselves, and the sums.
-  integer, parameter :: block_length = 1024
+  integer, parameter :: block_length = 256
   integer, parameter :: sum_strain = 1, sum_plastic = 2, sum_damage = 3, sum_water = 4, &
     sum_stabilisation = 5, sum_damping = 6, sum_load = 7, sum_kinetic = 8, sum_ahead = 9, sums = 9
 
@@ -84,63 +83,73 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n     !! nodes first to first + n - 1
     real(dp), intent(out) :: part(sums) !! see sum_*
-    real(dp) :: energy(block_length), strain, load, kinetic, ahead, mass(2)
-    integer :: i, j, last
+    real(dp) :: energy(block_length)
+    integer :: i, last
 
     last = first + n - 1
     call stored_energies(disc, ground, state, first, n, energy)
-    strain = 0.0_dp
-    load = 0.0_dp
-    kinetic = 0.0_dp
-    ahead = 0.0_dp
+    ! What the rate law stores is not the change of J e at finite strain: see volume_work.
     do i = first, last
-      ! What the rate law stores is not the change of J e at finite strain: see volume_work.
-      strain = strain + disc%dual%area(i)*(energy(i-first+1)*(state%f(1, i)*state%f(4, i) &
+      energy(i-first+1) = disc%dual%area(i)*(energy(i-first+1)*(state%f(1, i)*state%f(4, i) &
         - state%f(2, i)*state%f(3, i)) - state%volume_work(i))
-      load = load + (state%load(1, i)*(state%u(1, i) - state%u_load(1, i)) &
-                     + state%load(2, i)*(state%u(2, i) - state%u_load(2, i)))
-      do j = 1, 2
-        mass(j) = 0.0_dp
-        if (motion%mobility(j, i) > 0.0_dp) mass(j) = 1.0_dp/motion%mobility(j, i)
-      end do
-      ahead = ahead + (mass(1)*state%v(1, i)**2 + mass(2)*state%v(2, i)**2)
-      kinetic = kinetic + (mass(1)*state%v(1, i)*state%acceleration(1, i) &
-                           + mass(2)*state%v(2, i)*state%acceleration(2, i))
     end do
     part = 0.0_dp
-    part(sum_strain) = strain
-    part(sum_load) = load
-    part(sum_ahead) = ahead
-    part(sum_kinetic) = ahead - motion%step*kinetic
-    part(sum_damping) = four_sums(n, state%damped(first:last))
+    part(sum_strain) = some_sums(n, energy)
+    call moving_sums(2*n, motion%step, state%load(:, first:last), state%u(:, first:last), &
+      state%u_load(:, first:last), motion%mobility(:, first:last), state%v(:, first:last), &
+      state%acceleration(:, first:last), part(sum_load), part(sum_ahead), part(sum_kinetic))
+    part(sum_damping) = some_sums(n, state%damped(first:last))
     associate (area => disc%dual%area(first:last))
       if (allocated(state%history)) part(sum_plastic) = &
-        four_sums(n, state%history(history_plastic_work, first:last)*area)
+        some_sums(n, state%history(history_plastic_work, first:last)*area)
       if (damages(state)) part(sum_damage) = &
-        four_sums(n, state%history(history_damage_work, first:last)*area)
+        some_sums(n, state%history(history_damage_work, first:last)*area)
       if (allocated(state%water_work)) part(sum_water) = &
-        four_sums(n, state%water_work(first:last)*area)
+        some_sums(n, state%water_work(first:last)*area)
     end associate
     if (allocated(state%stabilising)) part(sum_stabilisation) = &
-      four_sums(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
+      some_sums(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
   end subroutine block_sums
 
-  !> Sum of n values, in four sums that do not wait for each other.
-  pure real(dp) function four_sums(n, a)
+  !> Work of the load since it was set, v.M v and that less step v.M a, over n components.
+  pure subroutine moving_sums(n, step, load, u, u_load, mobility, v, acceleration, work, ahead, &
+    kinetic)
     integer, intent(in) :: n
-    real(dp), intent(in) :: a(n)
-    real(dp) :: four(4)
+    real(dp), intent(in) :: step !! [s]
+    real(dp), dimension(n), intent(in) :: load, u, u_load, mobility, v, acceleration
+    real(dp), intent(out) :: work, ahead, kinetic !! [J/m]
+    real(dp), dimension(2*block_length) :: each, momentum
     integer :: i
 
-    four = 0.0_dp
-    do i = 1, n - 3, 4
-      four = four + a(i:i+3)
+    do i = 1, n
+      each(i) = load(i)*(u(i) - u_load(i))
+      ! Next to nothing where motion is held.
+      momentum(i) = v(i)/merge(mobility(i), huge(1.0_dp), mobility(i) > 0.0_dp)
     end do
-    four_sums = (four(1) + four(2)) + (four(3) + four(4))
-    do i = n - modulo(n, 4) + 1, n
-      four_sums = four_sums + a(i)
+    work = some_sums(n, each)
+    each(:n) = momentum(:n)*v
+    ahead = some_sums(n, each)
+    each(:n) = momentum(:n)*acceleration
+    kinetic = ahead - step*some_sums(n, each)
+  end subroutine moving_sums
+
+  !> Sum of n values, in sums that do not wait for each other.
+  pure real(dp) function some_sums(n, a)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a(n)
+    integer, parameter :: lanes = 16
+    real(dp) :: lane(lanes)
+    integer :: i
+
+    lane = 0.0_dp
+    do i = 1, n - lanes + 1, lanes
+      lane = lane + a(i:i+lanes-1)
     end do
-  end function four_sums
+    some_sums = sum(lane)
+    do i = n - modulo(n, lanes) + 1, n
+      some_sums = some_sums + a(i)
+    end do
+  end function some_sums
 
   !> Elastic energy stored at the nodes of a block, per current volume [J/m3].
   pure subroutine stored_energies(disc, ground, state, first, n, energy)
@@ -149,8 +158,8 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n
     real(dp), intent(out) :: energy(n)
-    real(dp) :: stress(soil_points,4)
-    integer :: i, start, run
+    real(dp) :: stress(soil_points,4), damage(soil_points)
+    integer :: start, run
 
     start = first
     do while (start < first + n)
@@ -160,14 +169,10 @@ contains
         run = run + 1
       end do
       call points_take(run, state%stress(:, start:start+run-1), stress)
-      call elastic_energies(ground%law(disc%soil(start))%elastic, run, stress, &
-                            energy(start-first+1:))
+      if (damages(state)) damage(:run) = state%history(history_damage, start:start+run-1)
+      call soil_stored_energies(ground%law(disc%soil(start)), run, stress, damage, &
+                                energy(start-first+1:))
       start = start + run
-    end do
-    if (.not. damages(state)) return
-    do i = first, first + n - 1
-      if (state%history(history_damage, i) > 0.0_dp) energy(i-first+1) = soil_stored_energy( &
-        ground%law(disc%soil(i)), state%stress(:, i), state%history(history_damage, i))
     end do
   end subroutine stored_energies
 

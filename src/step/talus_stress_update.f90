@@ -13,8 +13,10 @@ module talus_stress_update
   use talus_points, only: soil_points, points_take, points_put
   use talus_objective, only: strain_advance, piola_stresses
   use talus_soil_law, only: soil_law_t, soil_trial, soil_excess, soil_returns, &
-    soil_stored_energies, soil_ok, history_eqps, history_damage, history_size, &
+    soil_ok, history_eqps, history_damage, history_size, &
     stress_bishop, stress_net
+  use talus_elastic, only: elastic_energies
+  use talus_damage, only: driver_none
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_storage, only: storage_invert
   implicit none
@@ -83,7 +85,7 @@ contains
     integer, intent(inout) :: failed
     real(dp), dimension(soil_points,4) :: f_old, f_new, strain, before, effective, stress
     real(dp), dimension(soil_points) :: suction_old, suction, saturation, det_mid, det_old, &
-      det_new, energy, energy_new, worn, damage, excess, left
+      det_new, energy, energy_new, worn, excess, left, reduced
     integer :: list(soil_points), last, listed, j
 
     last = first + n - 1
@@ -101,10 +103,10 @@ contains
       suction(:n) = 0.0_dp
       saturation(:n) = 1.0_dp
     end if
-    call history_get(state, first, n, worn, damage)
+    call history_get(state, first, n, worn)
 
     associate (law => ground%law(soil))
-      call soil_stored_energies(law, n, damage, before, energy)
+      call elastic_energies(law%elastic, n, before, energy)
       call soil_trial(law, n, f_old, f_new, suction_old, suction, before, strain, effective, &
                       det_mid, det_old, det_new)
       call soil_excess(law, n, suction, saturation, effective, excess)
@@ -117,8 +119,13 @@ contains
         list(listed) = j
       end do
       if (listed > 0) call return_block(law, first, listed, list, det_mid, det_old, det_new, &
-        suction, saturation, before, strain, effective, stress, damage, left, state, failed)
-      call soil_stored_energies(law, n, damage, effective, energy_new)
+        suction, saturation, before, strain, effective, stress, left, energy, reduced, state, failed)
+      call elastic_energies(law%elastic, n, effective, energy_new)
+      if (law%damage%driver /= driver_none) then
+        do j = 1, listed
+          energy_new(list(j)) = reduced(j)
+        end do
+      end if
     end associate
     if (ground%wet) call water_work_block(ground, soil, first, n, suction_old, suction, &
       saturation, det_old, det_new, effective, state, stress)
@@ -138,42 +145,42 @@ contains
     call piola_stresses(n, disc%dual%area(first:last), f_new, stress, q(:, first:last))
   end subroutine update_block
 
-  !> Whether each point of a block ever yielded or was damaged (> 0), and its damage.
-  pure subroutine history_get(state, first, n, worn, damage)
+  !> Whether each point of a block ever yielded or was damaged: > 0.
+  pure subroutine history_get(state, first, n, worn)
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n
-    real(dp), intent(inout) :: worn(soil_points), damage(soil_points)
+    real(dp), intent(inout) :: worn(soil_points)
     integer :: j
 
     if (.not. allocated(state%history)) then
       worn(:n) = 0.0_dp
-      damage(:n) = 0.0_dp
     else if (size(state%history, 1) == history_size) then
       do j = 1, n
-        damage(j) = state%history(history_damage, first+j-1)
-        worn(j) = max(state%history(history_eqps, first+j-1), damage(j))
+        worn(j) = max(state%history(history_eqps, first+j-1), &
+                      state%history(history_damage, first+j-1))
       end do
     else
       worn(:n) = state%history(history_eqps, first:first+n-1)
-      damage(:n) = 0.0_dp
     end if
   end subroutine history_get
 
   !> The points of a block that do not stay elastic: put side by side, returned, and put back.
   subroutine return_block(law, first, m, list, det_mid, det_old, det_new, suction, saturation, &
-    before, strain, effective, stress, damage, left, state, failed)
+    before, strain, effective, stress, left, energy, reduced, state, failed)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: first, m, list(soil_points) !! points of the block that first begins
     real(dp), dimension(soil_points), intent(in) :: det_mid, det_old, det_new, suction, &
       saturation
     real(dp), dimension(soil_points,4), intent(in) :: before, strain
     real(dp), dimension(soil_points,4), intent(inout) :: effective, stress
-    real(dp), dimension(soil_points), intent(inout) :: damage, left
+    real(dp), dimension(soil_points), intent(inout) :: left, energy !! energy stored before [J/m3]
+    real(dp), intent(inout) :: reduced(soil_points) !! by damage: energy stored after, by place in
+                                                    !! the list [J/m3]; set only with damage
     type(state_t), intent(inout) :: state
     integer, intent(inout) :: failed
     real(dp), dimension(soil_points,4) :: turned, total, trial, total_stress
     real(dp) :: history(soil_points,history_size)
-    real(dp), dimension(soil_points) :: middle, volume, pull, wet, scale
+    real(dp), dimension(soil_points) :: middle, volume, pull, wet, scale, energy_old
     integer :: code(soil_points), i, j, kept
 
     kept = 0
@@ -191,13 +198,13 @@ contains
       history(i, kept+1:) = 0.0_dp
     end do
     call soil_returns(law, m, middle, volume, pull, wet, turned, total, trial, history, &
-                      total_stress, scale, code)
+                      total_stress, scale, energy_old, reduced, code)
     do i = 1, m
       j = list(i)
       effective(j, :) = trial(i, :)
       stress(j, :) = total_stress(i, :)
       left(j) = scale(i)
-      damage(j) = history(i, history_damage)
+      if (law%damage%driver /= driver_none) energy(j) = energy_old(i)
       if (kept > 0) state%history(:, first+j-1) = history(i, :kept)
       if (code(i) /= soil_ok) failed = max(failed, code(i)*size(state%volume_work) + first + j - 1)
     end do

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The slope of the demo, input/rain_slope, at three spacings with one smoothing length.
 
-The time of failure must agree within 3 %, and within 5 % the mass of the slide: what has moved by more than half
-as far as the middle of its block, the median of all that moved, when the soil has come to rest. (The greatest
-displacement is that of single nodes at the toe, and grows as nodes get finer.) In the storm, equilibrium is ten times as strict as in
-the demo: creep that passes for balance moves the time of failure by as much as the spacing does. The coarsest
-spacing that a deck may have, ell/3, is shown beside the three. At one level the width of the band follows the
-spacing.
+The time of failure must agree within 3 %, and within 5 % the mass of the slide: what has moved by more than
+half as far as the middle of its block, the median of all that moved, when the soil has come to rest. (The
+greatest displacement is that of single nodes at the toe, and grows as nodes get finer.) In the storm,
+equilibrium is ten times as strict as in the demo: creep that passes for balance moves the time of failure
+by as much as the spacing does. The coarsest spacing that a deck may have, ell/3, is shown beside the three.
+At one level the width of the band follows the spacing.
 """
 
 import pathlib

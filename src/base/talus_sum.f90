@@ -1,13 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Sums over nodes whose result does not depend on the number of threads: fixed blocks are summed
-!> in parallel, and the block sums in order.
+!> in parallel, and the block sums in order. Within a block there are several sums that do not wait
+!> for each other.
 module talus_sum
   use talus_kinds, only: dp
   implicit none
   private
-  public :: sum_blocks, sum_products, sum_add
+  public :: sum_blocks, sum_products, sum_apart, sum_add
 
-  integer, parameter :: block_length = 1024
+  integer, parameter :: block_length = 1024, lanes = 16
 
 contains
 
@@ -16,12 +17,13 @@ contains
     integer, intent(in) :: n
     real(dp), intent(in) :: a(n) !! any array of n elements
     real(dp), allocatable :: part(:)
-    integer :: b
+    integer :: b, first
 
     allocate (part((n + block_length - 1)/block_length))
-    !$omp parallel do default(none) shared(n, a, part) private(b) schedule(static)
+    !$omp parallel do default(none) shared(n, a, part) private(b, first) schedule(static)
     do b = 1, size(part)
-      part(b) = sum(a((b-1)*block_length+1:min(n, b*block_length)))
+      first = (b - 1)*block_length + 1
+      part(b) = sum_apart(min(block_length, n - first + 1), a(first))
     end do
     !$omp end parallel do
     total = sum(part)
@@ -32,18 +34,51 @@ contains
     integer, intent(in) :: n
     real(dp), intent(in) :: a(n), b(n) !! any arrays of n elements
     real(dp), allocatable :: part(:)
-    integer :: i, first, last
+    integer :: i, first
 
     allocate (part((n + block_length - 1)/block_length))
-    !$omp parallel do default(none) shared(n, a, b, part) private(i, first, last) schedule(static)
+    !$omp parallel do default(none) shared(n, a, b, part) private(i, first) schedule(static)
     do i = 1, size(part)
       first = (i - 1)*block_length + 1
-      last = min(n, i*block_length)
-      part(i) = dot_product(a(first:last), b(first:last))
+      part(i) = products_apart(min(block_length, n - first + 1), a(first), b(first))
     end do
     !$omp end parallel do
     total = sum(part)
   end function sum_products
+
+  !> Sum of n values on one thread.
+  pure real(dp) function sum_apart(n, a) result(total)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a(n)
+    real(dp) :: lane(lanes)
+    integer :: i
+
+    lane = 0.0_dp
+    do i = 1, n - lanes + 1, lanes
+      lane = lane + a(i:i+lanes-1)
+    end do
+    total = sum(lane)
+    do i = n - modulo(n, lanes) + 1, n
+      total = total + a(i)
+    end do
+  end function sum_apart
+
+  !> Sum of n products on one thread.
+  pure real(dp) function products_apart(n, a, b) result(total)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a(n), b(n)
+    real(dp) :: lane(lanes)
+    integer :: i
+
+    lane = 0.0_dp
+    do i = 1, n - lanes + 1, lanes
+      lane = lane + a(i:i+lanes-1)*b(i:i+lanes-1)
+    end do
+    total = sum(lane)
+    do i = n - modulo(n, lanes) + 1, n
+      total = total + a(i)*b(i)
+    end do
+  end function products_apart
 
   !> Add a small value to a long-running total without losing its low bits (Kahan 1965).
   pure subroutine sum_add(total, lost, value)

@@ -14,7 +14,7 @@ module talus_audit
     history_plastic_work, history_damage_work
   use talus_soil_step, only: motion_t
   use talus_inertia, only: inertia_momentum
-  use talus_sum, only: sum_products
+  use talus_sum, only: sum_products, sum_apart
   implicit none
   private
   public :: energies_t, audit_energies, audit_energy_error, audit_stored_water, audit_water_error
@@ -94,21 +94,21 @@ contains
         - state%f(2, i)*state%f(3, i)) - state%volume_work(i))
     end do
     part = 0.0_dp
-    part(sum_strain) = some_sums(n, energy)
+    part(sum_strain) = sum_apart(n, energy)
     call moving_sums(2*n, motion%step, state%load(:, first:last), state%u(:, first:last), &
       state%u_load(:, first:last), motion%mobility(:, first:last), state%v(:, first:last), &
       state%acceleration(:, first:last), part(sum_load), part(sum_ahead), part(sum_kinetic))
-    part(sum_damping) = some_sums(n, state%damped(first:last))
+    part(sum_damping) = sum_apart(n, state%damped(first:last))
     associate (area => disc%dual%area(first:last))
       if (allocated(state%history)) part(sum_plastic) = &
-        some_sums(n, state%history(history_plastic_work, first:last)*area)
+        sum_apart(n, state%history(history_plastic_work, first:last)*area)
       if (damages(state)) part(sum_damage) = &
-        some_sums(n, state%history(history_damage_work, first:last)*area)
+        sum_apart(n, state%history(history_damage_work, first:last)*area)
       if (allocated(state%water_work)) part(sum_water) = &
-        some_sums(n, state%water_work(first:last)*area)
+        sum_apart(n, state%water_work(first:last)*area)
     end associate
     if (allocated(state%stabilising)) part(sum_stabilisation) = &
-      some_sums(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
+      sum_apart(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
   end subroutine block_sums
 
   !> Work of the load since it was set, v.M v and that less step v.M a, over n components.
@@ -126,30 +126,12 @@ contains
       ! Next to nothing where motion is held.
       momentum(i) = v(i)/merge(mobility(i), huge(1.0_dp), mobility(i) > 0.0_dp)
     end do
-    work = some_sums(n, each)
+    work = sum_apart(n, each)
     each(:n) = momentum(:n)*v
-    ahead = some_sums(n, each)
+    ahead = sum_apart(n, each)
     each(:n) = momentum(:n)*acceleration
-    kinetic = ahead - step*some_sums(n, each)
+    kinetic = ahead - step*sum_apart(n, each)
   end subroutine moving_sums
-
-  !> Sum of n values, in sums that do not wait for each other.
-  pure real(dp) function some_sums(n, a)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: a(n)
-    integer, parameter :: lanes = 16
-    real(dp) :: lane(lanes)
-    integer :: i
-
-    lane = 0.0_dp
-    do i = 1, n - lanes + 1, lanes
-      lane = lane + a(i:i+lanes-1)
-    end do
-    some_sums = sum(lane)
-    do i = n - modulo(n, lanes) + 1, n
-      some_sums = some_sums + a(i)
-    end do
-  end function some_sums
 
   !> Elastic energy stored at the nodes of a block, per current volume [J/m3].
   pure subroutine stored_energies(disc, ground, state, first, n, energy)

@@ -101,16 +101,26 @@ contains
     real(dp), intent(in) :: a, b
     type(direction_t), intent(in) :: from
     type(direction_t), intent(inout) :: to
+
+    call blend(size(to%d), a, from%d, b, to%d)
+    call blend(size(to%m), a, from%m, b, to%m)
+    call blend(size(to%k), a, from%k, b, to%k)
+  end subroutine direction_blend
+
+  !> The same for one array of n elements, taken as one row.
+  subroutine blend(n, a, from, b, to)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: a, b
+    real(dp), intent(in) :: from(n)
+    real(dp), intent(inout) :: to(n)
     integer :: i
 
-    !$omp parallel do default(none) shared(a, from, b, to) private(i) schedule(static)
-    do i = 1, size(to%d, 2)
-      to%d(:, i) = a*from%d(:, i) + b*to%d(:, i)
-      to%m(:, i) = a*from%m(:, i) + b*to%m(:, i)
-      to%k(:, i) = a*from%k(:, i) + b*to%k(:, i)
+    !$omp parallel do default(none) shared(n, a, from, b, to) private(i) schedule(static)
+    do i = 1, n
+      to(i) = a*from(i) + b*to(i)
     end do
     !$omp end parallel do
-  end subroutine direction_blend
+  end subroutine blend
 
   !> Residual K d - quotient M d of a direction [N/m].
   subroutine direction_residual(direction, quotient, residual)
@@ -166,20 +176,29 @@ contains
     real(dp), intent(in) :: least
     logical, intent(out) :: regular
     real(dp) :: square, factor
-    integer :: i
 
     square = sum_products(size(direction%d), direction%d, direction%m)
     regular = square > least
     if (.not. regular) return
     factor = 1.0_dp/sqrt(square)
-    !$omp parallel do default(none) shared(direction, factor) private(i) schedule(static)
-    do i = 1, size(direction%d, 2)
-      direction%d(:, i) = factor*direction%d(:, i)
-      direction%m(:, i) = factor*direction%m(:, i)
-      direction%k(:, i) = factor*direction%k(:, i)
+    call multiply(size(direction%d), factor, direction%d)
+    call multiply(size(direction%m), factor, direction%m)
+    call multiply(size(direction%k), factor, direction%k)
+  end subroutine scale_length
+
+  !> Multiply an array of n elements, taken as one row.
+  subroutine multiply(n, factor, a)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: factor
+    real(dp), intent(inout) :: a(n)
+    integer :: i
+
+    !$omp parallel do default(none) shared(n, factor, a) private(i) schedule(static)
+    do i = 1, n
+      a(i) = factor*a(i)
     end do
     !$omp end parallel do
-  end subroutine scale_length
+  end subroutine multiply
 
   !> Shares of the directions in the sum of unit length with the greatest quotient. All are of unit
   !> length, and orthogonal with respect to M.

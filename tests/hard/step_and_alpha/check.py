@@ -115,10 +115,9 @@ case.note(
     "soil lacks of balance, a few per cent of the weight: the slope fails later and slides less far. F, "
     "smoothed over ell, differs from the motion of the nodes, most of all in a shear band, and only the "
     "stabilisation resists there. Tried: a tolerance of 1e-5 and storm steps of 900 s move the times of "
-    "failure of both by under 3 % and leave their distance of 10 %. A square of beta (4.11) acts as half the "
-    "stabilisation does. A residual of 2 W - W W in place of W F leaves 0.6 % of the 0.9 % of the factor, "
-    "3 W - 3 W W + W W W 0.8 %, at one and two more smoothings both ways; weights with a cusp at the centre, "
-    "(1 - q) exp(-8 q), 0.4 %, with less smoothing. A residual of the F of the first level brings the times "
+    "failure of both by under 3 % and leave their distance of 10 %. A square of beta (4.11), residuals "
+    "of F smoothed less and weights with a cusp at the centre all left a good part of it. A residual of the F "
+    "of the first level brings the times "
     "of failure to within 4 %, but lets nodes of the sliding mass fly off at 0.05 (17 m), and the free square's "
     "frequencies fall by 10 % at ell = 3h."
 )

@@ -116,9 +116,8 @@ case.note(
     "smoothed over ell, differs from the motion of the nodes, most of all in a shear band, and only the "
     "stabilisation resists there. Tried: a tolerance of 1e-5 and storm steps of 900 s move the times of "
     "failure of both by under 3 % and leave their distance of 10 %. A square of beta (4.11), residuals "
-    "of F smoothed less and weights with a cusp at the centre all left a good part of it. A residual of the F "
-    "of the first level brings the times "
-    "of failure to within 4 %, but lets nodes of the sliding mass fly off at 0.05 (17 m), and the free square's "
-    "frequencies fall by 10 % at ell = 3h."
+    "of F smoothed less and weights with a cusp at the centre all left a good part of it. A residual of the "
+    "F of the first level brings the times of failure to within 4 %, but lets nodes of the sliding mass fly "
+    "off at 0.05 (17 m), and the free square's frequencies fall by 10 % at ell = 3h."
 )
 sys.exit(case.verdict())

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The result file of a run (HDF5, schema in post/README.md) and its XDMF description.
 !> The file is open only while something is written, and a snapshot gets its name only when all of
-!> it is on disk: a run killed at any moment leaves the snapshots finished so far.
+!> it is on disk, so that a killed run leaves the snapshots finished so far. Only HDF5's own entry of
+!> the name takes several writes: a kill between these can leave the file unreadable.
 module talus_result
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_io

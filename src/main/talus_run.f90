@@ -20,6 +20,7 @@ module talus_run
   use talus_setup_restart, only: setup_restart
   use talus_result, only: result_create, result_write_text, result_write_attribute, &
     result_write_mesh
+  use talus_cost, only: snapshots_of
   use talus_history, only: history_store, history_close
   use talus_record, only: record_start
   use talus_stages, only: stage_run
@@ -170,6 +171,19 @@ contains
     end associate
   end subroutine start_state
 
+  !> Snapshots that the stages write, and two named ones each: mechanism, last_good.
+  pure integer function expected_snapshots(session) result(snapshots)
+    type(session_t), intent(in) :: session
+    real(dp) :: total
+    integer :: i
+
+    total = 0.0_dp
+    do i = 1, size(session%deck%stage)
+      total = total + 2.0_dp + snapshots_of(session, session%deck%stage(i), huge(total))
+    end do
+    snapshots = int(min(total, 1.0e9_dp))
+  end function expected_snapshots
+
   !> Create the result file with all that does not change, and the history.
   subroutine open_results(session, overwrite, status)
     type(session_t), intent(inout) :: session
@@ -177,7 +191,8 @@ contains
     type(status_t), intent(inout) :: status
 
     associate (result => session%result, deck => session%deck, disc => session%disc)
-      call result_create(result, session%base//'.h5', overwrite, deck%output%xdmf, status)
+      call result_create(result, session%base//'.h5', expected_snapshots(session), overwrite, &
+                         deck%output%xdmf, status)
       call result_write_attribute(result, 'version', version, status)
       call result_write_attribute(result, 'git_hash', git_hash, status)
       call result_write_attribute(result, 'title', deck%run%title, status)

@@ -10,11 +10,12 @@ module talus_h5
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_h5_file, only: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_names, &
-    h5_delete, h5_name_letters, h5_group_begin, h5_group_end, h5_fail, h5_letters, h5_text_type
+    h5_delete, h5_name_letters, h5_group_begin, h5_group_end, h5_group_roomy, h5_fail, &
+    h5_letters, h5_text_type
   implicit none
   private
   public :: h5_file_t, h5_create, h5_open, h5_close, h5_exists, h5_names, h5_name_letters
-  public :: h5_delete, h5_group_begin, h5_group_end
+  public :: h5_delete, h5_group_begin, h5_group_end, h5_group_roomy
   public :: h5_write, h5_attribute
 
   !> Write a dataset: text; reals (n), (m,n); integers (n), (m,n); a list of names.

@@ -1,21 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> One-dimensional HDF5 datasets that grow.
+!> One-dimensional HDF5 datasets that grow. The room that a series is given is one chunk: as long as
+!> it stays within that, growing adds nothing to the file and changes it by two writes, of which the
+!> first, of values behind the end, is not seen before the second, of the length.
 module talus_h5_append
-  use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
-  use hdf5, only: hid_t, hsize_t, h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, &
-    h5sget_simple_extent_dims_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, h5dget_space_f, &
-    h5dset_extent_f, h5tclose_f, h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, &
-    h5pset_chunk_f, h5s_select_set_f, h5s_unlimited_f, h5t_native_double, h5t_native_integer, &
+  use, intrinsic :: iso_c_binding, only: c_char, c_int8_t, c_loc, c_ptr
+  use hdf5, only: hid_t, hsize_t, size_t, h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, &
+    h5sget_simple_extent_dims_f, h5dcreate_f, h5dopen_f, h5dread_f, h5dwrite_f, h5dclose_f, &
+    h5dget_space_f, h5dget_type_f, h5dset_extent_f, h5tclose_f, h5tget_size_f, &
+    h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, h5pset_chunk_f, &
+    h5s_select_set_f, h5s_unlimited_f, h5t_native_double, h5t_native_integer, &
     h5p_link_create_f, h5p_dataset_create_f
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_h5_file, only: h5_file_t, h5_fail, h5_letters, h5_text_type
   implicit none
   private
-  public :: h5_start_series, h5_append
-
-  !> Rows of one chunk.
-  integer(hsize_t), parameter :: chunk_rows = 512
+  public :: h5_start_series, h5_append, h5_append_series
 
   !> Letters of one text in a series of texts.
   integer, parameter, public :: h5_series_letters = 64
@@ -28,10 +28,11 @@ module talus_h5_append
 contains
 
   !> Create an empty series.
-  subroutine h5_start_series(file, name, kind_of, status)
+  subroutine h5_start_series(file, name, kind_of, room, status)
     type(h5_file_t), intent(in) :: file
     character(*), intent(in) :: name    !! path of the dataset
     character(*), intent(in) :: kind_of !! real, integer or text
+    integer, intent(in) :: room         !! number of values that it can take safely
     type(status_t), intent(inout) :: status
     integer(hid_t) :: data_type, space, parents, chunked, dataset
     integer :: ierr, ignored
@@ -49,7 +50,7 @@ contains
     call h5pcreate_f(h5p_link_create_f, parents, ierr)
     call h5pset_create_inter_group_f(parents, 1, ierr)
     call h5pcreate_f(h5p_dataset_create_f, chunked, ierr)
-    call h5pset_chunk_f(chunked, 1, [chunk_rows], ierr)
+    call h5pset_chunk_f(chunked, 1, [int(room, hsize_t)], ierr)
     call h5dcreate_f(file%here, name, data_type, space, dataset, ierr, chunked, parents)
     if (ierr /= 0) then
       call h5_fail(file, name, 'could not be created (does it exist already?)', status)
@@ -101,6 +102,39 @@ contains
     call append_data(file, name, letter_type, size(values, kind=hsize_t), c_loc(letters), status)
     call h5tclose_f(letter_type, ignored)
   end subroutine append_texts
+
+  !> Append all values of another series of the same kind.
+  subroutine h5_append_series(file, name, source, status)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name   !! path of the dataset
+    character(*), intent(in) :: source !! path of the other dataset
+    type(status_t), intent(inout) :: status
+    integer(c_int8_t), allocatable, target :: values(:)
+    type(c_ptr) :: address
+    integer(hid_t) :: dataset, space, data_type
+    integer(hsize_t) :: dims(1), max_dims(1)
+    integer(size_t) :: bytes
+    integer :: ierr, ignored
+
+    if (status_failed(status)) return
+    call h5dopen_f(file%id, source, dataset, ierr)
+    if (ierr /= 0) then
+      call h5_fail(file, source, 'not found, nothing copied', status)
+      return
+    end if
+    call h5dget_space_f(dataset, space, ierr)
+    call h5sget_simple_extent_dims_f(space, dims, max_dims, ignored)
+    call h5sclose_f(space, ignored)
+    call h5dget_type_f(dataset, data_type, ierr)
+    call h5tget_size_f(data_type, bytes, ierr)
+    allocate (values(bytes*dims(1)))
+    address = c_loc(values)
+    call h5dread_f(dataset, data_type, address, ierr)
+    if (ierr /= 0) call h5_fail(file, source, 'could not be read', status)
+    call append_data(file, name, data_type, dims(1), address, status)
+    call h5tclose_f(data_type, ignored)
+    call h5dclose_f(dataset, ignored)
+  end subroutine h5_append_series
 
   !> Lengthen a series and write its new end.
   subroutine append_data(file, name, data_type, n, address, status)

@@ -1,22 +1,39 @@
 ! SPDX-License-Identifier: MIT
 !> HDF5 files: open, close, and groups that appear whole or not at all.
+!>
+!> A program may be killed between any two writes of the library, which writes what has changed in
+!> the order of addresses and the end of the file last. So that every such state can be read,
+!> nothing that has a name is changed by more than one write at a time: groups that get new names
+!> keep them in their header, which has room for all of them from the start (h5_group_roomy), and
+!> what is new is on disk, within the end of the file there, before its name is written.
 module talus_h5_file
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use hdf5, only: hid_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
     h5fflush_f, h5gcreate_anon_f, h5gclose_f, h5olink_f, h5tcopy_f, h5tset_size_f, &
     h5tset_cset_f, h5tset_strpad_f, h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, &
-    h5lexists_f, h5ldelete_f, h5gn_members_f, h5gget_obj_info_idx_f, h5f_acc_trunc_f, &
-    h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_scope_global_f, &
-    h5t_native_double, h5t_fortran_s1, h5t_cset_utf8_f, h5t_str_nullpad_f, h5p_link_create_f
+    h5pset_link_creation_order_f, h5pset_link_phase_change_f, h5pset_est_link_info_f, &
+    h5gcreate_f, h5lexists_f, h5ldelete_f, h5gn_members_f, h5gget_obj_info_idx_f, &
+    h5f_acc_trunc_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_scope_global_f, &
+    h5p_crt_order_tracked_f, h5p_file_create_f, h5p_group_create_f, h5p_link_create_f, &
+    h5t_native_double, h5t_fortran_s1, h5t_cset_utf8_f, h5t_str_nullpad_f
   use talus_status, only: status_t, status_set, status_failed, status_io
   implicit none
   private
   public :: h5_create, h5_open, h5_close, h5_exists, h5_names, h5_delete, h5_group_begin
-  public :: h5_group_end
+  public :: h5_group_end, h5_group_roomy
   public :: h5_fail, h5_letters, h5_text_type
 
   !> Longest name of an object that h5_names tells.
   integer, parameter, public :: h5_name_letters = 64
+
+  !> Letters of a name for which h5_group_roomy has room.
+  integer, parameter :: h5_usual_letters = 12
+
+  !> Names for which the root group has room.
+  integer, parameter :: root_names = 16
+
+  !> Most names that a group may have room for: its header, a message of HDF5, has at most 64 kB.
+  integer, parameter :: most_names = 1500
 
   !> An open HDF5 file.
   type, public :: h5_file_t
@@ -53,12 +70,18 @@ contains
     type(h5_file_t), intent(out) :: file
     character(*), intent(in) :: path !! file name
     type(status_t), intent(inout) :: status
-    integer :: ierr
+    integer(hid_t) :: creation
+    integer :: ierr, ignored
 
     file%path = path
     if (status_failed(status)) return
     call library_start(ierr)
-    if (ierr == 0) call h5fcreate_f(path, h5f_acc_trunc_f, file%id, ierr)
+    if (ierr == 0) call h5pcreate_f(h5p_file_create_f, creation, ierr)
+    if (ierr == 0) then
+      call make_room(creation, root_names, ierr)
+      call h5fcreate_f(path, h5f_acc_trunc_f, file%id, ierr, creation)
+      call h5pclose_f(creation, ignored)
+    end if
     if (ierr /= 0) then
       file%id = -1
       call status_set(status, status_io, 'output file '''//path// &
@@ -145,6 +168,41 @@ contains
     end do
   end subroutine h5_names
 
+  !> Let a group keep its names in its header, with room for as many from the start.
+  subroutine make_room(creation, names, ierr)
+    integer(hid_t), intent(in) :: creation !! properties with which a group or a file is created
+    integer, intent(in) :: names
+    integer, intent(out) :: ierr !! 0 when all went well
+
+    ! The order of creation, which nobody asks for, makes HDF5 choose the groups that can do this.
+    call h5pset_link_creation_order_f(creation, h5p_crt_order_tracked_f, ierr)
+    if (ierr == 0) call h5pset_link_phase_change_f(creation, most_names, 0, ierr)
+    if (ierr == 0) call h5pset_est_link_info_f(creation, min(names, most_names), &
+                                               h5_usual_letters, ierr)
+  end subroutine make_room
+
+  !> Create an empty group that can take `names` names, each by one write. More names can be given,
+  !> then by several writes.
+  subroutine h5_group_roomy(file, name, names, status)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name !! path of the group; its parent must exist
+    integer, intent(in) :: names     !! of h5_usual_letters at most
+    type(status_t), intent(inout) :: status
+    integer(hid_t) :: creation, group
+    integer :: ierr, ignored
+
+    if (status_failed(status)) return
+    call h5pcreate_f(h5p_group_create_f, creation, ierr)
+    if (ierr == 0) then
+      call make_room(creation, names, ierr)
+      if (ierr == 0) call h5gcreate_f(file%id, name, group, ierr, gcpl_id=creation)
+      if (ierr == 0) call h5gclose_f(group, ierr)
+      call h5pclose_f(creation, ignored)
+    end if
+    if (ierr /= 0) call h5_fail(file, name, 'could not be created (name in use, disk full?)', &
+      status)
+  end subroutine h5_group_roomy
+
   !> Take an object out of the file; nothing happens when there is none.
   subroutine h5_delete(file, name, status)
     type(h5_file_t), intent(in) :: file
@@ -173,15 +231,20 @@ contains
   end subroutine h5_group_begin
 
   !> Give the group its name. Its content is flushed first, so that the name never shows half of it.
-  subroutine h5_group_end(file, name, status)
+  !> A group that had the name gives way to it in the same write.
+  subroutine h5_group_end(file, name, status, replace)
     type(h5_file_t), intent(inout) :: file
     character(*), intent(in) :: name !! path of the group, e.g. '/snapshots/000000'
     type(status_t), intent(inout) :: status
+    logical, intent(in), optional :: replace !! the name may be in use; default .false.
     integer(hid_t) :: parents
     integer :: ierr, ignored
 
     if (status_failed(status)) return
     call h5fflush_f(file%id, h5f_scope_global_f, ierr)
+    if (present(replace)) then
+      if (replace) call h5_delete(file, name, status)
+    end if
     if (ierr == 0) call h5pcreate_f(h5p_link_create_f, parents, ierr)
     if (ierr == 0) then
       call h5pset_create_inter_group_f(parents, 1, ierr)

@@ -5,14 +5,17 @@ module talus_history
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_io
   use talus_text, only: text_of
-  use talus_h5, only: h5_file_t, h5_open, h5_close, h5_attribute
-  use talus_h5_append, only: h5_append, h5_start_series, h5_series_letters
+  use talus_h5, only: h5_file_t, h5_open, h5_close, h5_attribute, h5_group_begin, h5_group_end
+  use talus_h5_append, only: h5_append, h5_append_series, h5_start_series, h5_series_letters
   implicit none
   private
   public :: history_create, history_add, history_store, history_close
 
   !> Letters of a column's name and of its unit: those of a boundary's name, and what is about it.
   integer, parameter, public :: history_name_letters = 80
+
+  !> Records for which the result file has room at first.
+  integer, parameter :: least_room = 512
 
   !> A history being written. Its first columns are always time, stage and step.
   type, public :: history_t
@@ -21,7 +24,8 @@ module talus_history
     character(history_name_letters), allocatable :: names(:)   !! of the further columns
     character(history_name_letters), allocatable :: units(:)   !! of the further columns, 1 for none
     integer :: unit = -1                                       !! of the open CSV file
-    logical :: started = .false.                               !! /history exists
+    integer :: stored = 0                                      !! records in the result file
+    integer :: room = 0                                        !! records it can take as it is
     integer :: rows = 0                                        !! not yet in the result file
     real(dp), allocatable :: time(:), values(:,:)              !! [s], (rows, columns)
     integer, allocatable :: step(:)
@@ -152,47 +156,67 @@ contains
     character(*), intent(in) :: h5_path !! of the result file, closed at the moment
     type(status_t), intent(inout) :: status
     type(h5_file_t) :: file
-    integer :: i, n
 
     if (status_failed(status)) return
-    n = history%rows
     call h5_open(file, h5_path, status)
-    if (.not. history%started) call series_start(history, file, status)
-    call h5_append(file, '/history/time', history%time(:n), status)
-    call h5_append(file, '/history/stage', history%stage(:n), status)
-    call h5_append(file, '/history/step', history%step(:n), status)
-    do i = 1, size(history%names)
-      call h5_append(file, column(history, i), history%values(:n, i), status)
-    end do
+    if (history%stored + history%rows <= history%room) then
+      call append_rows(history, file, '/history/', status)
+    else
+      call rebuild(history, file, status)
+    end if
     call h5_close(file, status)
-    if (.not. status_failed(status)) history%rows = 0
+    if (status_failed(status)) return
+    history%stored = history%stored + history%rows
+    history%rows = 0
   end subroutine history_store
 
-  !> Path of a column in the result file.
-  pure function column(history, i) result(path)
-    type(history_t), intent(in) :: history
-    integer, intent(in) :: i !! number of the column
-    character(:), allocatable :: path
-
-    path = '/history/'//trim(history%names(i))
-  end function column
-
-  subroutine series_start(history, file, status)
+  !> Write the group /history anew, with room for twice as many records at least.
+  subroutine rebuild(history, file, status)
     type(history_t), intent(inout) :: history
-    type(h5_file_t), intent(in) :: file
+    type(h5_file_t), intent(inout) :: file
     type(status_t), intent(inout) :: status
     integer :: i
 
-    call h5_start_series(file, '/history/time', 'real', status)
-    call h5_attribute(file, '/history/time', 'units', 's', status)
-    call h5_start_series(file, '/history/stage', 'text', status)
-    call h5_start_series(file, '/history/step', 'integer', status)
+    history%room = max(least_room, 2*(history%stored + history%rows))
+    call h5_group_begin(file, status)
+    call h5_start_series(file, 'time', 'real', history%room, status)
+    call h5_attribute(file, 'time', 'units', 's', status)
+    call h5_start_series(file, 'stage', 'text', history%room, status)
+    call h5_start_series(file, 'step', 'integer', history%room, status)
     do i = 1, size(history%names)
-      call h5_start_series(file, column(history, i), 'real', status)
-      call h5_attribute(file, column(history, i), 'units', trim(history%units(i)), status)
+      call h5_start_series(file, trim(history%names(i)), 'real', history%room, status)
+      call h5_attribute(file, trim(history%names(i)), 'units', trim(history%units(i)), status)
     end do
-    history%started = .not. status_failed(status)
-  end subroutine series_start
+    if (history%stored > 0) then
+      call h5_append_series(file, 'time', '/history/time', status)
+      call h5_append_series(file, 'stage', '/history/stage', status)
+      call h5_append_series(file, 'step', '/history/step', status)
+      do i = 1, size(history%names)
+        call h5_append_series(file, trim(history%names(i)), '/history/'//trim(history%names(i)), &
+          status)
+      end do
+    end if
+    call append_rows(history, file, '', status)
+    call h5_group_end(file, '/history', status, replace=.true.)
+  end subroutine rebuild
+
+  !> Append the records that are not yet in the file.
+  subroutine append_rows(history, file, group, status)
+    type(history_t), intent(in) :: history
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: group !! path before the names of the series
+    type(status_t), intent(inout) :: status
+    integer :: i
+
+    associate (n => history%rows)
+      call h5_append(file, group//'time', history%time(:n), status)
+      call h5_append(file, group//'stage', history%stage(:n), status)
+      call h5_append(file, group//'step', history%step(:n), status)
+      do i = 1, size(history%names)
+        call h5_append(file, group//trim(history%names(i)), history%values(:n, i), status)
+      end do
+    end associate
+  end subroutine append_rows
 
   !> Close the CSV file.
   subroutine history_close(history, status)

@@ -5,8 +5,8 @@ module talus_restart
   use talus_kinds, only: dp, i8
   use talus_status, only: status_t, status_failed
   use talus_state, only: state_t
-  use talus_h5, only: h5_file_t, h5_open, h5_close, h5_exists, h5_delete, h5_group_begin, &
-    h5_group_end, h5_write
+  use talus_h5, only: h5_file_t, h5_open, h5_close, h5_exists, h5_group_begin, h5_group_end, &
+    h5_write
   use talus_h5_read, only: h5_read
   implicit none
   private
@@ -49,11 +49,9 @@ contains
     exchange%writes = .true.
     exchange%group = ''
     call h5_open(exchange%file, path, status)
-    if (h5_exists(exchange%file, '/restart')) &
-      call h5_delete(exchange%file, '/restart/'//name, status)
     call h5_group_begin(exchange%file, status)
     call exchange_all(exchange, state, restart, status)
-    call h5_group_end(exchange%file, '/restart/'//name, status)
+    call h5_group_end(exchange%file, '/restart/'//name, status, replace=.true.)
     call h5_close(exchange%file, status)
   end subroutine restart_write
 

@@ -1,15 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> The result file of a run (HDF5, schema in post/README.md) and its XDMF description.
 !> The file is open only while something is written, and a snapshot gets its name only when all of
-!> it is on disk, so that a killed run leaves the snapshots finished so far. Only HDF5's own entry of
-!> the name takes several writes: a kill between these can leave the file unreadable.
+!> it is on disk, so that a killed run leaves the snapshots finished so far.
 module talus_result
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_io
   use talus_text, only: text_of
   use talus_file, only: file_exists, file_delete
   use talus_h5, only: h5_file_t, h5_create, h5_open, h5_close, h5_group_begin, h5_group_end, &
-    h5_write, h5_attribute
+    h5_group_roomy, h5_write, h5_attribute
   use talus_xdmf, only: xdmf_t, xdmf_create, xdmf_begin, xdmf_field, xdmf_write
   implicit none
   private
@@ -43,9 +42,10 @@ module talus_result
 contains
 
   !> Create the file; one that exists is refused unless it may be overwritten.
-  subroutine result_create(result, path, overwrite, xdmf, status)
+  subroutine result_create(result, path, snapshots, overwrite, xdmf, status)
     type(result_t), intent(out) :: result
     character(*), intent(in) :: path   !! of the HDF5 file, ending in .h5
+    integer, intent(in) :: snapshots   !! how many are expected; more can be written
     logical, intent(in) :: overwrite   !! an existing file may be replaced
     logical, intent(in) :: xdmf        !! also write a description for ParaView beside it
     type(status_t), intent(inout) :: status
@@ -66,6 +66,8 @@ contains
     if (len(result%xdmf_path) > 0) call file_delete(result%xdmf_path)
     call h5_create(result%file, path, status)
     call h5_attribute(result%file, '/', 'schema_version', schema_version, status)
+    call h5_group_roomy(result%file, '/snapshots', snapshots, status)
+    call h5_group_roomy(result%file, '/restart', snapshots, status)
     call h5_close(result%file, status)
   end subroutine result_create
 

@@ -3,7 +3,8 @@
 """Kill a program that writes results without pause, again and again, and read what it left.
 
 The writer never rests, so each kill hits a writing; a real run writes for a few milliseconds in
-minutes. Every kill must leave the snapshots finished before, all fields equal to their step.
+minutes. Every kill must leave the snapshots finished before, all fields equal to their step, and
+the files beside them. test_every_write.py looks at the result file after each single write.
 """
 
 import argparse
@@ -18,31 +19,21 @@ from pathlib import Path
 
 import h5py
 
+from killed_result import ROWS, check_file
+
 
 def check(folder):
     """Number of snapshots of the result in `folder`; raises when something does not fit."""
     with h5py.File(folder / "killed.h5", "r") as file:
-        nodes = file["mesh/nodes"].shape[0]
-        names = sorted(file["snapshots"])
-        for step, name in enumerate(names):
-            group = file["snapshots"][name]
-            assert int(name) == step == group.attrs["step"], f"snapshot {name} is out of order"
-            for field, shape in (("displacement", (nodes, 2)), ("stress", (nodes, 4))):
-                values = group[field][...]
-                assert values.shape == shape and (values == step).all(), f"{name}/{field}"
-            assert "damage" in group and group["damage"].attrs["units"] == b"1"
-        rows = [file["history"][column].shape[0] for column in ("time", "step", "energy")]
-        assert min(rows) >= len(names) - 1, f"history {rows}, {len(names)} snapshots"
-        times = file["history/time"][: min(rows)]
-        assert (times == range(len(times))).all(), "history has holes"
+        snapshots = check_file(file)
     tree = xml.etree.ElementTree.parse(folder / "killed.xdmf")
     listed = len(tree.findall(".//Time"))
-    assert len(names) - 1 <= listed <= len(names), f"XDMF lists {listed} of {len(names)}"
+    assert snapshots - 1 <= listed <= snapshots, f"XDMF lists {listed} of {snapshots}"
     lines = (folder / "killed_history.csv").read_text().splitlines()
-    assert lines[0] == "time[s],stage,step,energy[J/m]" and len(lines) >= len(names)
+    assert lines[0] == "time[s],stage,step,energy[J/m]" and len(lines) > ROWS * (snapshots - 1)
     summary = (folder / "killed_summary.txt").read_text()
     assert summary.startswith("steps = ") and summary.endswith("\n"), summary
-    return len(names)
+    return snapshots
 
 
 def main():

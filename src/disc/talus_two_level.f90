@@ -4,7 +4,7 @@
 !> weights W = S A, S symmetric, every row sum one: constant strain is kept and the integration
 !> constraint of the first level is kept exactly, and the adjoint is the same operator.
 module talus_two_level
-  use talus_kinds, only: dp
+  use talus_kinds, only: sp, dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
   use talus_kernel, only: kernel_spline
@@ -20,13 +20,18 @@ module talus_two_level
   real(dp), parameter :: sinkhorn_tolerance = 4.0_dp*epsilon(1.0_dp)
   integer, parameter :: sinkhorn_max = 500
 
-  !>   F(L) = sum of s(k) A(K) F1(K),     R(L) = sum of sa(k) A(K) P(K),   K = cell(k)
+  !> Symmetric weights:
+  !>   F(L) = rest(L) A(L) F1(L) + sum of s(k) A(K) F1(K),   R(L) the same of P,       K = cell(k)
+  !> others:
+  !>   F(L) = sum of plain(k) A(K) F1(K),                    R(L) = sum of adjoint(k) A(K) P(K)
   type :: two_level_t
-    integer, allocatable :: offset(:) !! first entry of each cell, (n+1)
-    integer, allocatable :: cell(:)   !! cells within ell, ascending
-    real(dp), allocatable :: s(:)     !! weight over area [1/m2]
-    real(dp), allocatable :: sa(:)    !! the transpose of s, when it differs from s [1/m2]
-    integer :: sweeps = 0             !! Sinkhorn sweeps used
+    integer, allocatable :: offset(:)   !! first entry of each cell, (n+1)
+    integer, allocatable :: cell(:)     !! cells within ell, ascending
+    real(sp), allocatable :: s(:)       !! symmetric weight over area, rounded [1/m2]
+    real(dp), allocatable :: rest(:)    !! what rounding leaves of the row's sum [1/m2], (n)
+    real(dp), allocatable :: plain(:)   !! weight over area [1/m2]
+    real(dp), allocatable :: adjoint(:) !! the transpose of plain [1/m2]
+    integer :: sweeps = 0               !! Sinkhorn sweeps used
   end type two_level_t
 
 contains
@@ -39,7 +44,7 @@ contains
     real(dp), intent(in) :: length  !! ell: support radius of the weights [m]
     integer, intent(in) :: weights  !! one of weights_*
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: support(:)
+    real(dp), allocatable :: support(:), weight(:)
     type(cell_list_t) :: list
 
     allocate (support(size(area)))
@@ -47,54 +52,59 @@ contains
     call cell_list_build(list, x, support)
     call cell_list_supports(list, x, two_level%offset, two_level%cell, status)
     if (status_failed(status)) return
-    allocate (two_level%s(size(two_level%cell)))
+    allocate (weight(size(two_level%cell)))
     select case (weights)
     case (weights_rk)
-      call fill_rk(two_level, x, area, support, status)
+      call fill_rk(two_level, x, area, support, weight, status)
     case default
-      call fill_kernel(two_level, x, length)
+      call fill_kernel(two_level, x, length, weight)
     end select
-    if (weights == weights_area) call normalise_rows(two_level, area)
+    if (weights == weights_area) call normalise_rows(two_level, area, weight)
     if (weights == weights_symmetric) then
-      call sinkhorn(two_level, area, status)
+      call sinkhorn(two_level, area, weight, status)
+      call round_weights(two_level, area, weight)
     else
-      call fill_transpose(two_level)
+      call fill_transpose(two_level, weight)
+      call move_alloc(weight, two_level%plain)
     end if
   end subroutine two_level_build
 
   !> Kernel values of all pairs.
-  subroutine fill_kernel(two_level, x, length)
-    type(two_level_t), intent(inout) :: two_level
+  subroutine fill_kernel(two_level, x, length, weight)
+    type(two_level_t), intent(in) :: two_level
     real(dp), intent(in) :: x(:,:), length
+    real(dp), intent(inout) :: weight(:)
     integer :: l, k
 
-    !$omp parallel do default(none) shared(two_level, x, length) private(l, k) schedule(static)
+    !$omp parallel do default(none) shared(two_level, x, length, weight) private(l, k) schedule(static)
     do l = 1, size(x, 2)
       do k = two_level%offset(l), two_level%offset(l+1) - 1
-        two_level%s(k) = kernel_spline(norm2(x(:, two_level%cell(k)) - x(:, l))/length)
+        weight(k) = kernel_spline(norm2(x(:, two_level%cell(k)) - x(:, l))/length)
       end do
     end do
     !$omp end parallel do
   end subroutine fill_kernel
 
   !> Plain area-weighted average.
-  pure subroutine normalise_rows(two_level, area)
-    type(two_level_t), intent(inout) :: two_level
+  pure subroutine normalise_rows(two_level, area, weight)
+    type(two_level_t), intent(in) :: two_level
     real(dp), intent(in) :: area(:)
+    real(dp), intent(inout) :: weight(:)
     integer :: l
 
     do l = 1, size(area)
       associate (first => two_level%offset(l), last => two_level%offset(l+1) - 1)
-        two_level%s(first:last) = two_level%s(first:last) &
-          /dot_product(two_level%s(first:last), area(two_level%cell(first:last)))
+        weight(first:last) = weight(first:last) &
+          /dot_product(weight(first:last), area(two_level%cell(first:last)))
       end associate
     end do
   end subroutine normalise_rows
 
   !> Reproducing-kernel values at the nodes, the paper's reading of the second level.
-  subroutine fill_rk(two_level, x, area, support, status)
-    type(two_level_t), intent(inout) :: two_level
+  subroutine fill_rk(two_level, x, area, support, weight, status)
+    type(two_level_t), intent(in) :: two_level
     real(dp), intent(in) :: x(:,:), area(:), support(:)
+    real(dp), intent(inout) :: weight(:)
     type(status_t), intent(inout) :: status
     integer :: l, bad
     logical :: regular
@@ -103,8 +113,8 @@ contains
     do l = 1, size(area)
       associate (first => two_level%offset(l), last => two_level%offset(l+1) - 1)
         associate (near => two_level%cell(first:last))
-          call rk_shape(x(:, l), x(:, near), support(near), two_level%s(first:last), regular)
-          two_level%s(first:last) = two_level%s(first:last)/area(near)
+          call rk_shape(x(:, l), x(:, near), support(near), weight(first:last), regular)
+          weight(first:last) = weight(first:last)/area(near)
         end associate
       end associate
       if (.not. regular) bad = l
@@ -116,9 +126,10 @@ contains
 
   !> Scale the kernel to d S d with unit row sums (Sinkhorn & Knopp 1967). The geometric mean of two
   !> sweeps converges fast for symmetric matrices.
-  subroutine sinkhorn(two_level, area, status)
+  subroutine sinkhorn(two_level, area, weight, status)
     type(two_level_t), intent(inout) :: two_level
     real(dp), intent(in) :: area(:)
+    real(dp), intent(inout) :: weight(:)
     type(status_t), intent(inout) :: status
     real(dp), allocatable :: d(:), row(:)
     real(dp) :: worst, before
@@ -130,12 +141,12 @@ contains
     do while (two_level%sweeps < sinkhorn_max)
       before = worst
       worst = 0.0_dp
-      !$omp parallel do default(none) shared(two_level, area, d, row) private(l, k) &
+      !$omp parallel do default(none) shared(two_level, area, weight, d, row) private(l, k) &
       !$omp reduction(max:worst) schedule(static)
       do l = 1, size(area)
         row(l) = 0.0_dp
         do k = two_level%offset(l), two_level%offset(l+1) - 1
-          row(l) = row(l) + two_level%s(k)*d(two_level%cell(k))*area(two_level%cell(k))
+          row(l) = row(l) + weight(k)*d(two_level%cell(k))*area(two_level%cell(k))
         end do
         row(l) = row(l)*d(l)
         worst = max(worst, abs(row(l) - 1.0_dp))
@@ -151,23 +162,42 @@ contains
       text_of(worst)//'); even out the nodes')
     do l = 1, size(area)
       do k = two_level%offset(l), two_level%offset(l+1) - 1
-        two_level%s(k) = d(l)*d(two_level%cell(k))*two_level%s(k)
+        weight(k) = d(l)*d(two_level%cell(k))*weight(k)
       end do
     end do
   end subroutine sinkhorn
 
-  !> The transposed weights on the same pattern: K is within ell of L when L is within ell of K.
-  pure subroutine fill_transpose(two_level)
+  !> Keep symmetric weights in single precision: a step reads all of them twice and waits for memory.
+  !> Rounded alike on both sides they stay symmetric, and what they miss of the row's sum goes to the
+  !> cell itself, so that constants and areas are kept as before.
+  pure subroutine round_weights(two_level, area, weight)
     type(two_level_t), intent(inout) :: two_level
+    real(dp), intent(in) :: area(:), weight(:)
+    integer :: l
+
+    two_level%s = real(weight, sp)
+    allocate (two_level%rest(size(area)))
+    do l = 1, size(area)
+      associate (first => two_level%offset(l), last => two_level%offset(l+1) - 1)
+        two_level%rest(l) = (1.0_dp - dot_product(real(two_level%s(first:last), dp), &
+          area(two_level%cell(first:last))))/area(l)
+      end associate
+    end do
+  end subroutine round_weights
+
+  !> The transposed weights on the same pattern: K is within ell of L when L is within ell of K.
+  pure subroutine fill_transpose(two_level, weight)
+    type(two_level_t), intent(inout) :: two_level
+    real(dp), intent(in) :: weight(:)
     integer, allocatable :: filled(:)
     integer :: l, k, p
 
-    allocate (two_level%sa(size(two_level%s)), filled(size(two_level%offset)-1))
+    allocate (two_level%adjoint(size(weight)), filled(size(two_level%offset)-1))
     filled = 0
     do l = 1, size(filled)
       do k = two_level%offset(l), two_level%offset(l+1) - 1
         p = two_level%offset(two_level%cell(k)) + filled(two_level%cell(k))
-        two_level%sa(p) = two_level%s(k)
+        two_level%adjoint(p) = weight(k)
         filled(two_level%cell(k)) = filled(two_level%cell(k)) + 1
       end do
     end do

@@ -39,7 +39,7 @@ contains
       bytes(phase_force) = 148.0_dp*n + first
       if (session%motion%local > 0.0_dp) bytes(phase_force) = bytes(phase_force) + 16.0_dp*n
       if (disc%two_levels .and. .not. disc%damage_only) then
-        bytes(phase_second) = 68.0_dp*n + 12.0_dp*real(size(disc%two_level%cell), dp)
+        bytes(phase_second) = 76.0_dp*n + 8.0_dp*real(size(disc%two_level%cell), dp)
         bytes(phase_adjoint) = bytes(phase_second)
       else
         bytes(phase_strain) = bytes(phase_strain) + 8.0_dp*n

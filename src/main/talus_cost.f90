@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Bytes that a run holds, counted from what is allocated, and those that it will write.
 module talus_cost
-  use talus_kinds, only: dp, i8
+  use talus_kinds, only: sp, dp, i8
   use talus_deck_types, only: stage_t
   use talus_session, only: session_t
   use talus_state, only: state_t
@@ -28,7 +28,7 @@ module talus_cost
 
   !> Bytes of an array, 0 when it is not allocated.
   interface bytes
-    module procedure bytes_real_1, bytes_real_2, bytes_integer_1, bytes_integer_2
+    module procedure bytes_single_1, bytes_real_1, bytes_real_2, bytes_integer_1, bytes_integer_2
   end interface bytes
 
 contains
@@ -54,7 +54,8 @@ contains
         band = int(maxval(abs(dual%edge_node(2, :) - dual%edge_node(1, :))), i8)
       end associate
       cost%second = bytes(disc%two_level%offset) + bytes(disc%two_level%cell) &
-        + bytes(disc%two_level%s) + bytes(disc%two_level%sa)
+        + bytes(disc%two_level%s) + bytes(disc%two_level%rest) + bytes(disc%two_level%plain) &
+        + bytes(disc%two_level%adjoint)
       cost%stabilise = bytes(disc%stabilise%offset) + bytes(disc%stabilise%node) &
         + bytes(disc%stabilise%reach) + bytes(disc%stabilise%stiffness)
       ! Strength reduction also keeps the state of its mechanism.
@@ -126,6 +127,13 @@ contains
       + bytes(state%ratio) + bytes(state%potential) + bytes(state%capacity) &
       + bytes(state%suction) + bytes(state%give) + bytes(state%anchor) + bytes(state%water_work)
   end function state_bytes
+
+  pure integer(i8) function bytes_single_1(values) result(total)
+    real(sp), allocatable, intent(in) :: values(:)
+
+    total = 0_i8
+    if (allocated(values)) total = 4_i8*size(values, kind=i8)
+  end function bytes_single_1
 
   pure integer(i8) function bytes_real_1(values) result(total)
     real(dp), allocatable, intent(in) :: values(:)

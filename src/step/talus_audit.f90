@@ -34,7 +34,7 @@ module talus_audit
   end type energies_t
 
   !> Nodes whose energies are summed by themselves, and the sums.
-  integer, parameter :: block_length = 256
+  integer, parameter :: block_length = 1024
   integer, parameter :: sum_strain = 1, sum_plastic = 2, sum_damage = 3, sum_water = 4, &
     sum_stabilisation = 5, sum_damping = 6, sum_load = 7, sum_kinetic = 8, sum_ahead = 9, sums = 9
 

@@ -41,46 +41,47 @@ contains
     real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*), area(*)
     logical, intent(in) :: divided !! by the area, which else is not read
     real(dp), intent(inout) :: q(4,*), force(2,*), energy(*), loss(*)
-    real(dp) :: r1, r2, x, y, kappa, lost, rr, f1, f2, p11, p12, p21, p22, total, gone, whole
+    real(dp), dimension(2) :: r, f, p_1, p_2, own, h_1, h_2, row_1, row_2, half
+    real(dp) :: kappa, lost, rr, total, gone, whole, scale_own, before_own
     integer :: i, j, k
 
     !$omp do schedule(static)
     do i = 1, n
-      f1 = 0.0_dp
-      f2 = 0.0_dp
-      p11 = 0.0_dp
-      p12 = 0.0_dp
-      p21 = 0.0_dp
-      p22 = 0.0_dp
+      f = 0.0_dp
+      p_1 = 0.0_dp
+      p_2 = 0.0_dp
       total = 0.0_dp
       gone = 0.0_dp
+      own = u(:, i)
+      h_1 = h(1:2, i)
+      h_2 = h(3:4, i)
+      scale_own = scale(i)
+      before_own = before(i)
       do k = offset(i), offset(i+1) - 1
         j = node(k)
-        x = 0.5_dp*reach(1, k)
-        y = 0.5_dp*reach(2, k)
-        r1 = u(1, j) - u(1, i) - ((h(1, i) + h(1, j))*x + (h(2, i) + h(2, j))*y)
-        r2 = u(2, j) - u(2, i) - ((h(3, i) + h(3, j))*x + (h(4, i) + h(4, j))*y)
-        kappa = stiffness(k)*min(scale(i), scale(j))
-        lost = stiffness(k)*min(before(i), before(j)) - kappa
-        rr = r1*r1 + r2*r2
+        half = 0.5_dp*reach(:, k)
+        row_1 = (h_1 + h(1:2, j))*half
+        row_2 = (h_2 + h(3:4, j))*half
+        r(1) = u(1, j) - own(1) - (row_1(1) + row_1(2))
+        r(2) = u(2, j) - own(2) - (row_2(1) + row_2(2))
+        kappa = stiffness(k)*min(scale_own, scale(j))
+        lost = stiffness(k)*min(before_own, before(j)) - kappa
+        rr = r(1)*r(1) + r(2)*r(2)
         total = total + kappa*rr
         gone = gone + lost*rr
-        r1 = kappa*r1
-        r2 = kappa*r2
-        f1 = f1 + r1
-        f2 = f2 + r2
-        p11 = p11 + r1*x
-        p12 = p12 + r1*y
-        p21 = p21 + r2*x
-        p22 = p22 + r2*y
+        r = kappa*r
+        f = f + r
+        p_1 = p_1 + r(1)*half
+        p_2 = p_2 + r(2)*half
       end do
-      force(1, i) = f1
-      force(2, i) = f2
-      q(1, i) = q(1, i) - p11
-      q(2, i) = q(2, i) - p12
-      q(3, i) = q(3, i) - p21
-      q(4, i) = q(4, i) - p22
-      if (divided) q(:, i) = q(:, i)/area(i)
+      force(:, i) = f
+      if (divided) then
+        q(1:2, i) = (q(1:2, i) - p_1)/area(i)
+        q(3:4, i) = (q(3:4, i) - p_2)/area(i)
+      else
+        q(1:2, i) = q(1:2, i) - p_1
+        q(3:4, i) = q(3:4, i) - p_2
+      end if
       ! Forces at both ends of the step work, so what softening takes is 1/2 lost r_old.r_new. All
       ! residuals of a node are taken to change by one ratio, the root of that of its energies.
       whole = total + gone

@@ -2,7 +2,7 @@
 !> The second level at work: F(L) = sum of S(L,K) A(K) F1(K), and by the same gather its adjoint
 !> R(L) = sum of S(K,L) A(K) P(K) (src/THEORY.md (4.6), (4.8)).
 module talus_smooth
-  use talus_kinds, only: dp
+  use talus_kinds, only: sp, dp
   use talus_two_level, only: two_level_t
   implicit none
   private
@@ -16,7 +16,11 @@ contains
     real(dp), contiguous, intent(in) :: y(:,:)    !! area times first-level gradient [m2], (4,n)
     real(dp), contiguous, intent(inout) :: h(:,:) !! smoothed gradient, (4,n)
 
-    call gather(size(h, 2), two_level%offset, two_level%cell, two_level%s, y, h)
+    if (allocated(two_level%plain)) then
+      call gather_plain(two_level%offset, two_level%cell, two_level%plain, y, h)
+    else
+      call gather(size(h, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, y, h)
+    end if
   end subroutine smooth_gradient
 
   !> First Piola stress smoothed by the adjoint.
@@ -25,33 +29,53 @@ contains
     real(dp), contiguous, intent(in) :: q(:,:)    !! area times first Piola stress [N m/m], (4,n)
     real(dp), contiguous, intent(inout) :: r(:,:) !! smoothed first Piola stress [Pa], (4,n)
 
-    if (allocated(two_level%sa)) then
-      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%sa, q, r)
+    if (allocated(two_level%plain)) then
+      call gather_plain(two_level%offset, two_level%cell, two_level%adjoint, q, r)
     else
-      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%s, q, r)
+      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, q, r)
     end if
   end subroutine smooth_stress
 
-  !> The gather on plain arrays, in rows of two.
-  subroutine gather(n, offset, cell, s, from, to)
+  !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their own,
+  !> so that an addition need not wait for the one before.
+  subroutine gather(n, offset, cell, s, rest, from, to)
     integer, intent(in) :: n, offset(*), cell(*)
-    real(dp), intent(in) :: s(*), from(4,*)
+    real(sp), intent(in) :: s(*)
+    real(dp), intent(in) :: rest(*), from(4,*)
     real(dp), intent(inout) :: to(4,*)
-    real(dp) :: row_1(2), row_2(2)
-    integer :: l, k
+    real(dp) :: even(4), odd(4)
+    integer :: l, k, last
 
     !$omp do schedule(static)
     do l = 1, n
-      row_1 = 0.0_dp
-      row_2 = 0.0_dp
-      !GCC$ unroll 4
-      do k = offset(l), offset(l+1) - 1
-        row_1 = row_1 + s(k)*from(1:2, cell(k))
-        row_2 = row_2 + s(k)*from(3:4, cell(k))
+      even = rest(l)*from(:, l)
+      odd = 0.0_dp
+      last = offset(l+1) - 1
+      !GCC$ unroll 2
+      do k = offset(l), last - 1, 2
+        even = even + real(s(k), dp)*from(:, cell(k))
+        odd = odd + real(s(k+1), dp)*from(:, cell(k+1))
       end do
-      to(1:2, l) = row_1
-      to(3:4, l) = row_2
+      if (mod(last - offset(l), 2) == 0) even = even + real(s(last), dp)*from(:, cell(last))
+      to(:, l) = even + odd
     end do
     !$omp end do
   end subroutine gather
+
+  !> The gather with the other weights.
+  subroutine gather_plain(offset, cell, weight, from, to)
+    integer, contiguous, intent(in) :: offset(:), cell(:)
+    real(dp), contiguous, intent(in) :: weight(:), from(:,:)
+    real(dp), contiguous, intent(inout) :: to(:,:)
+    integer :: l, k
+
+    !$omp do schedule(static)
+    do l = 1, size(to, 2)
+      to(:, l) = 0.0_dp
+      do k = offset(l), offset(l+1) - 1
+        to(:, l) = to(:, l) + weight(k)*from(:, cell(k))
+      end do
+    end do
+    !$omp end do
+  end subroutine gather_plain
 end module talus_smooth

@@ -6,7 +6,7 @@ module talus_points
   use talus_kinds, only: dp
   implicit none
   private
-  public :: points_take, points_put
+  public :: points_take, points_put, points_alike
 
   !> Most points in a block: their fields stay in the first cache.
   integer, parameter, public :: soil_points = 64
@@ -42,4 +42,14 @@ contains
       field(4, i) = block(i, 4)
     end do
   end subroutine points_put
+
+  !> How many points from the first on are of its soil.
+  pure integer function points_alike(soil) result(n)
+    integer, intent(in) :: soil(:)
+
+    do n = 1, size(soil) - 1
+      if (soil(n+1) /= soil(1)) return
+    end do
+    n = size(soil)
+  end function points_alike
 end module talus_points

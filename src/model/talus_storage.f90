@@ -14,6 +14,11 @@ module talus_storage
   !> Iterations of storage_invert_giving; its brackets shrink in each, and a few suffice.
   integer, parameter :: most_iterations = 100
 
+  !> The inverse of storage_content: of one cell, or of n cells of one soil.
+  interface storage_invert
+    module procedure invert_one, invert_all
+  end interface storage_invert
+
 contains
 
   !> Water per reference area at a pore pressure [m3/m2].
@@ -44,7 +49,7 @@ contains
   end function storage_capacity
 
   !> Pressure and flow properties of stored water.
-  pure subroutine storage_invert(curve, storage, pore, jacobian, content, pressure, saturation, &
+  pure subroutine invert_one(curve, storage, pore, jacobian, content, pressure, saturation, &
     ratio, potential, capacity)
     type(water_curve_t), intent(in) :: curve
     real(dp), intent(in) :: storage     !! S_s [1/Pa]
@@ -56,23 +61,44 @@ contains
     real(dp), intent(out) :: ratio      !! k_r [-]
     real(dp), intent(out) :: potential  !! Phi [Pa]
     real(dp), intent(out) :: capacity   !! dw/dp, at least that of the saturated state [1/Pa]
-    real(dp) :: slope, excess, rise
+    real(dp), dimension(1) :: p, s, k, phi, c
 
-    ! Water above that at the air entry, and its rise with pressure from there to zero.
-    excess = content - pore*(curve%maximum - curve%entry_slope*curve%entry)
-    rise = pore*curve%entry_slope + jacobian*storage
-    if (excess < 0.0_dp) then
-      saturation = content/pore
-      call curve_at_saturation(curve, saturation, pressure, ratio, potential, slope)
-      pressure = -pressure
-      capacity = max(pore*slope, jacobian*storage)
-    else
-      pressure = excess/rise - curve%entry
-      if (pressure > 0.0_dp) pressure = (excess - rise*curve%entry)/(jacobian*storage)
-      call curve_at_pressure(curve, pressure, saturation, ratio, potential, slope)
-      capacity = storage_capacity(curve, storage, pore, jacobian, pressure, slope)
-    end if
-  end subroutine storage_invert
+    call invert_all(curve, storage, 1, [pore], [jacobian], [content], p, s, k, phi, c)
+    pressure = p(1)
+    saturation = s(1)
+    ratio = k(1)
+    potential = phi(1)
+    capacity = c(1)
+  end subroutine invert_one
+
+  !> The same of n cells of one soil.
+  pure subroutine invert_all(curve, storage, n, pore, jacobian, content, pressure, saturation, &
+    ratio, potential, capacity)
+    type(water_curve_t), intent(in) :: curve
+    real(dp), intent(in) :: storage
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: pore, jacobian, content
+    real(dp), dimension(n), intent(out) :: pressure, saturation, ratio, potential, capacity
+    real(dp) :: excess, rise, slope
+    integer :: j
+
+    saturation = content/pore
+    call curve_at_saturation(curve, n, saturation, pressure, ratio, potential, capacity)
+    do j = 1, n
+      ! Water above that at the air entry, and its rise with pressure from there to zero.
+      excess = content(j) - pore(j)*(curve%maximum - curve%entry_slope*curve%entry)
+      if (excess < 0.0_dp) then
+        pressure(j) = -pressure(j)
+        capacity(j) = max(pore(j)*capacity(j), jacobian(j)*storage)
+        cycle
+      end if
+      rise = pore(j)*curve%entry_slope + jacobian(j)*storage
+      pressure(j) = excess/rise - curve%entry
+      if (pressure(j) > 0.0_dp) pressure(j) = (excess - rise*curve%entry)/(jacobian(j)*storage)
+      call curve_at_pressure(curve, pressure(j), saturation(j), ratio(j), potential(j), slope)
+      capacity(j) = storage_capacity(curve, storage, pore(j), jacobian(j), pressure(j), slope)
+    end do
+  end subroutine invert_all
 
   !> The same where the pores widen with the pressure too: w = storage_content + give (p - anchor)
   !> (src/THEORY.md (5.4a)), by Newton's method between brackets. `pressure` is the first guess.

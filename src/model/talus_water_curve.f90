@@ -33,6 +33,11 @@ module talus_water_curve
   !! t = (Y - edge)/range.
   integer, parameter, public :: row_edge = 1, row_scale = 2, row_v = 3, inverse_rows = 8
 
+  !> Properties where the saturation is known: at one point, or at n of them.
+  interface curve_at_saturation
+    module procedure at_saturation, at_saturations
+  end interface curve_at_saturation
+
   type :: water_curve_t
     real(dp) :: residual = 0.0_dp          !! S_res [-]
     real(dp) :: maximum = 1.0_dp           !! S_max [-]
@@ -100,39 +105,111 @@ contains
 
   !> The inverse: suction and properties where the saturation is `saturation` < S_max.
   !! At S_max or above: suction 0. Drier than the table: its driest suction.
-  pure subroutine curve_at_saturation(curve, saturation, suction, conductivity_ratio, &
-    flux_potential, capacity)
+  pure subroutine at_saturation(curve, saturation, suction, conductivity_ratio, flux_potential, &
+    capacity)
     type(water_curve_t), intent(in) :: curve
     real(dp), intent(in) :: saturation          !! S_r [-]
     real(dp), intent(out) :: suction            !! s = -p_w >= 0 [Pa]
     real(dp), intent(out) :: conductivity_ratio !! k_r [-]
     real(dp), intent(out) :: flux_potential     !! Phi [Pa]
     real(dp), intent(out) :: capacity           !! dS_r/dp >= 0 [1/Pa]; 0 where saturated
-    real(dp) :: target, t, v, slope
-    integer :: i
+    real(dp), dimension(1) :: s, k, phi, c
 
-    target = curve%maximum - saturation
-    if (target <= curve%inverse(row_edge, 1)) then
-      suction = 0.0_dp
-      capacity = 0.0_dp
-      if (target > 0.0_dp) then
-        suction = target/curve%entry_slope
-        capacity = curve%entry_slope
+    call at_saturations(curve, 1, [saturation], s, k, phi, c)
+    suction = s(1)
+    conductivity_ratio = k(1)
+    flux_potential = phi(1)
+    capacity = c(1)
+  end subroutine at_saturation
+
+  !> The inverse at n points: step by step for all of them, so that no point waits for its own last
+  !> step while others could go on.
+  pure subroutine at_saturations(curve, n, saturation, suction, conductivity_ratio, &
+    flux_potential, capacity)
+    type(water_curve_t), intent(in) :: curve
+    integer, intent(in) :: n
+    real(dp), intent(in) :: saturation(n)
+    real(dp), dimension(n), intent(out) :: suction, conductivity_ratio, flux_potential, capacity
+    real(dp), dimension(n) :: target, v
+    integer :: cell(n), j
+
+    do j = 1, n
+      target(j) = curve%maximum - saturation(j)
+      if (target(j) <= curve%inverse(row_edge, 1)) then
+        cell(j) = 1
+      else
+        call cell_of(curve, target(j), saturation(j) - curve%residual, cell(j))
+        if (cell(j) > curve%wet_cells) target(j) = curve%residual - saturation(j)
       end if
-      conductivity_ratio = 1.0_dp
-      flux_potential = curve%potential_entry + (curve%entry - suction)
-      return
-    end if
-    call cell_of(curve, target, saturation - curve%residual, i)
-    if (i > curve%wet_cells) target = curve%residual - saturation
-    t = (target - curve%inverse(row_edge, i))*curve%inverse(row_scale, i)
-    t = min(1.0_dp, max(0.0_dp, t))
-    v = horner(curve%inverse(row_v:, i), t)
-    call solve_cell(curve%coef(:, i), target, v, slope)
-    suction = curve%coef(row_centre, i) + curve%coef(row_half, i)*v
-    capacity = slope*curve%coef(row_inverse_half, i)
-    call flow_at(curve%coef(:, i), v, conductivity_ratio, flux_potential)
-  end subroutine curve_at_saturation
+    end do
+    call solve_cells(n, cell, curve%coef, curve%inverse, target, v, capacity)
+    call flow_in_cells(n, cell, curve%coef, v, suction, conductivity_ratio, flux_potential, &
+      capacity)
+    do j = 1, n
+      target(j) = curve%maximum - saturation(j)
+      if (target(j) > curve%inverse(row_edge, 1)) cycle
+      suction(j) = 0.0_dp
+      capacity(j) = 0.0_dp
+      if (target(j) > 0.0_dp) then
+        suction(j) = target(j)/curve%entry_slope
+        capacity(j) = curve%entry_slope
+      end if
+      conductivity_ratio(j) = 1.0_dp
+      flux_potential(j) = curve%potential_entry + (curve%entry - suction(j))
+    end do
+  end subroutine at_saturations
+
+  !> Place v of each point in its cell and dY/dv there: one turn of Newton's method from a close
+  !> guess, and more where that was not enough.
+  pure subroutine solve_cells(n, cell, coef, inverse, target, v, slope)
+    integer, intent(in) :: n, cell(n)
+    real(dp), intent(in) :: coef(coef_rows,*), inverse(inverse_rows,*)
+    real(dp), intent(in) :: target(n)           !! Y; of a point that is too wet, anything
+    real(dp), intent(out) :: v(n), slope(n)
+    real(dp) :: next(n), t, value
+    integer :: i, j
+
+    do j = 1, n
+      i = cell(j)
+      t = (target(j) - inverse(row_edge, i))*inverse(row_scale, i)
+      v(j) = within(horner(inverse(row_v:, i), min(1.0_dp, max(0.0_dp, t))))
+    end do
+    do j = 1, n
+      call storage_at(coef(:, cell(j)), v(j), value, slope(j))
+      next(j) = v(j) + (target(j) - value)/slope(j)
+    end do
+    do j = 1, n
+      if (abs(next(j) - v(j)) <= 1.0e-7_dp .or. target(j) <= inverse(row_edge, 1)) then
+        v(j) = within(next(j))
+      else
+        call solve_cell(coef(:, cell(j)), target(j), v(j), slope(j))
+      end if
+    end do
+  end subroutine solve_cells
+
+  !> Suction and flow of points whose place in their cells is known; capacity from dY/dv.
+  pure subroutine flow_in_cells(n, cell, coef, v, suction, conductivity_ratio, flux_potential, &
+    capacity)
+    integer, intent(in) :: n, cell(n)
+    real(dp), intent(in) :: coef(coef_rows,*), v(n)
+    real(dp), dimension(n), intent(out) :: suction, conductivity_ratio, flux_potential
+    real(dp), intent(inout) :: capacity(n) !! in: dY/dv; out: dS_r/dp [1/Pa]
+    integer :: i, j
+
+    do j = 1, n
+      i = cell(j)
+      suction(j) = coef(row_centre, i) + coef(row_half, i)*v(j)
+      capacity(j) = capacity(j)*coef(row_inverse_half, i)
+      call flow_at(coef(:, i), v(j), conductivity_ratio(j), flux_potential(j))
+    end do
+  end subroutine flow_in_cells
+
+  !> A place in a cell.
+  elemental real(dp) function within(v)
+    real(dp), intent(in) :: v
+
+    within = min(1.0_dp, max(-1.0_dp, v))
+  end function within
 
   !> Effective saturation S_e = (S_r - S_res)/(S_max - S_res) at a pore pressure.
   pure real(dp) function curve_effective_saturation(curve, pressure) result(effective)
@@ -184,7 +261,7 @@ contains
 
     low = -1.0_dp
     high = 1.0_dp
-    v = min(high, max(low, v))
+    v = within(v)
     do iteration = 1, 60
       call storage_at(coef, v, value, slope)
       next = v + (target - value)/slope
@@ -197,7 +274,7 @@ contains
       if (next < low .or. next > high) next = 0.5_dp*(low + high)
       v = next
     end do
-    v = min(1.0_dp, max(-1.0_dp, next))
+    v = within(next)
   end subroutine solve_cell
 
   !> Cell that holds a saturation: a bucket of the guide, then bisection.

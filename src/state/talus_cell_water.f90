@@ -8,7 +8,7 @@ module talus_cell_water
   use talus_storage, only: storage_content, storage_invert, storage_invert_giving
   implicit none
   private
-  public :: cell_content, cell_invert
+  public :: cell_content, cell_invert, cells_invert
 
 contains
 
@@ -46,4 +46,27 @@ contains
       state%content(i), state%pressure(i), state%saturation(i), state%ratio(i), &
       state%potential(i), state%capacity(i))
   end subroutine cell_invert
+
+  !> Set pressure and flow properties of cells first to first + n - 1, all of one soil.
+  pure subroutine cells_invert(ground, soil, first, n, state)
+    type(ground_t), intent(in) :: ground
+    integer, intent(in) :: soil     !! number of their soil
+    integer, intent(in) :: first, n !! cells
+    type(state_t), intent(inout) :: state
+    real(dp) :: pore(n)
+    integer :: i, last
+
+    last = first + n - 1
+    if (allocated(state%give)) then
+      do i = first, last
+        call cell_invert(ground, soil, i, state)
+      end do
+      return
+    end if
+    pore = state%jacobian(first:last) - 1.0_dp + ground%porosity(soil)
+    call storage_invert(ground%curve(soil), ground%storage(soil), n, pore, &
+      state%jacobian(first:last), state%content(first:last), state%pressure(first:last), &
+      state%saturation(first:last), state%ratio(first:last), state%potential(first:last), &
+      state%capacity(first:last))
+  end subroutine cells_invert
 end module talus_cell_water

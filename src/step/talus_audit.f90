@@ -6,7 +6,7 @@
 !> the discretisation, its adjoint, the laws and the time step together.
 module talus_audit
   use talus_kinds, only: dp
-  use talus_points, only: soil_points, points_take
+  use talus_points, only: soil_points, points_take, points_alike
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
@@ -145,11 +145,7 @@ contains
 
     start = first
     do while (start < first + n)
-      run = 1
-      do while (run < soil_points .and. start + run < first + n)
-        if (disc%soil(start+run) /= disc%soil(start)) exit
-        run = run + 1
-      end do
+      run = points_alike(disc%soil(start:min(start + soil_points, first + n) - 1))
       call points_take(run, state%stress(:, start:start+run-1), stress)
       if (damages(state)) damage(:run) = state%history(history_damage, start:start+run-1)
       call soil_stored_energies(ground%law(disc%soil(start)), run, stress, damage, &

@@ -16,7 +16,8 @@ module talus_seepage
   use talus_state, only: state_t, water_balance_t
   use talus_conditions, only: inlets_t, inlet_flux, inlet_rain
   use talus_rain, only: rain_total, rain_next_change
-  use talus_cell_water, only: cell_invert
+  use talus_cell_water, only: cells_invert
+  use talus_points, only: soil_points, points_alike
   use talus_darcy, only: seepage_t, seepage_shape, seepage_hold, face_fluxes, cell_outflow, &
     seepage_step_limit, seepage_velocity
   use talus_seepage_newton, only: newton_t, newton_prepare, newton_solve, newton_cost
@@ -42,11 +43,18 @@ contains
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(state_t), intent(inout) :: state
-    integer :: i
+    integer :: start, first, last, n
 
-    !$omp parallel do default(none) shared(disc, ground, state) private(i) schedule(static)
-    do i = 1, disc%n
-      call cell_invert(ground, disc%soil(i), i, state)
+    !$omp parallel do default(none) shared(disc, ground, state) private(start, first, last, n) &
+    !$omp schedule(static)
+    do start = 1, disc%n, soil_points
+      last = min(disc%n, start + soil_points - 1)
+      first = start
+      do while (first <= last)
+        n = points_alike(disc%soil(first:last))
+        call cells_invert(ground, disc%soil(first), first, n, state)
+        first = first + n
+      end do
     end do
     !$omp end parallel do
   end subroutine seepage_invert

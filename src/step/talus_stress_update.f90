@@ -10,7 +10,7 @@ module talus_stress_update
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_points, only: soil_points, points_take, points_put
+  use talus_points, only: soil_points, points_take, points_put, points_alike
   use talus_objective, only: strain_advance, piola_stresses
   use talus_soil_law, only: soil_law_t, soil_trial, soil_excess, soil_returns, &
     soil_ok, history_eqps, history_damage, history_size, &
@@ -36,7 +36,7 @@ contains
     type(state_t), intent(inout) :: state
     real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress [N m/m], (4,n)
     integer, intent(inout) :: failed
-    integer :: first, last, start, i
+    integer :: first, last, start, alike, i
 
     !$omp do schedule(static) reduction(max:failed)
     do start = 1, disc%n, soil_points
@@ -48,14 +48,9 @@ contains
       end if
       first = start
       do while (first <= last)
-        i = first
-        do while (i < last)
-          if (disc%soil(i+1) /= disc%soil(first)) exit
-          i = i + 1
-        end do
-        call update_block(disc, ground, disc%soil(first), coupled, first, i - first + 1, h, state, &
-                          q, failed)
-        first = i + 1
+        alike = points_alike(disc%soil(first:last))
+        call update_block(disc, ground, disc%soil(first), coupled, first, alike, h, state, q, failed)
+        first = first + alike
       end do
     end do
     !$omp end do
@@ -219,21 +214,24 @@ contains
     real(dp), intent(in) :: f_new(soil_points,4)
     type(state_t), intent(inout) :: state
     real(dp), dimension(soil_points), intent(inout) :: suction_old, suction, saturation
-    real(dp) :: jacobian, over_range
-    integer :: i, j
+    real(dp) :: pore(n), over_range
+    integer :: last, j
 
-    over_range = 1.0_dp/(ground%curve(soil)%maximum - ground%curve(soil)%residual)
+    last = first + n - 1
     do j = 1, n
-      i = first + j - 1
-      jacobian = f_new(j, 1)*f_new(j, 4) - f_new(j, 2)*f_new(j, 3)
-      if (coupled) call storage_invert(ground%curve(soil), ground%storage(soil), &
-        jacobian - 1.0_dp + ground%porosity(soil), jacobian, state%content(i), state%pressure(i), &
-        state%saturation(i), state%ratio(i), state%potential(i), state%capacity(i))
-      state%jacobian(i) = jacobian
-      suction_old(j) = state%suction(i)
-      suction(j) = -state%pressure(i)
-      saturation(j) = (state%saturation(i) - ground%curve(soil)%residual)*over_range
+      state%jacobian(first+j-1) = f_new(j, 1)*f_new(j, 4) - f_new(j, 2)*f_new(j, 3)
+      suction_old(j) = state%suction(first+j-1)
     end do
+    if (coupled) then
+      pore = state%jacobian(first:last) - 1.0_dp + ground%porosity(soil)
+      call storage_invert(ground%curve(soil), ground%storage(soil), n, pore, &
+        state%jacobian(first:last), state%content(first:last), state%pressure(first:last), &
+        state%saturation(first:last), state%ratio(first:last), state%potential(first:last), &
+        state%capacity(first:last))
+    end if
+    over_range = 1.0_dp/(ground%curve(soil)%maximum - ground%curve(soil)%residual)
+    suction(:n) = -state%pressure(first:last)
+    saturation(:n) = (state%saturation(first:last) - ground%curve(soil)%residual)*over_range
     if (ground%law(soil)%stress == stress_net) suction(:n) = max(suction(:n), 0.0_dp)
     state%suction(first:first+n-1) = suction(:n)
   end subroutine water_block

@@ -136,7 +136,9 @@ contains
     do j = 1, n
       target(j) = curve%maximum - saturation(j)
       if (target(j) <= curve%inverse(row_edge, 1)) then
+        ! Too wet for the cells: solved somewhere in the first one, and set at the end.
         cell(j) = 1
+        target(j) = curve%inverse(row_edge, 1) + 0.5_dp/curve%inverse(row_scale, 1)
       else
         call cell_of(curve, target(j), saturation(j) - curve%residual, cell(j))
         if (cell(j) > curve%wet_cells) target(j) = curve%residual - saturation(j)
@@ -164,7 +166,7 @@ contains
   pure subroutine solve_cells(n, cell, coef, inverse, target, v, slope)
     integer, intent(in) :: n, cell(n)
     real(dp), intent(in) :: coef(coef_rows,*), inverse(inverse_rows,*)
-    real(dp), intent(in) :: target(n)           !! Y; of a point that is too wet, anything
+    real(dp), intent(in) :: target(n)           !! Y
     real(dp), intent(out) :: v(n), slope(n)
     real(dp) :: next(n), t, value
     integer :: i, j
@@ -179,7 +181,7 @@ contains
       next(j) = v(j) + (target(j) - value)/slope(j)
     end do
     do j = 1, n
-      if (abs(next(j) - v(j)) <= 1.0e-7_dp .or. target(j) <= inverse(row_edge, 1)) then
+      if (abs(next(j) - v(j)) <= 1.0e-7_dp) then
         v(j) = within(next(j))
       else
         call solve_cell(coef(:, cell(j)), target(j), v(j), slope(j))

@@ -88,8 +88,18 @@ contains
       'found; last pseudo-step '//text_of(step)//' s after '//text_of(i)// &
       ' steps, largest imbalance '// &
       text_of(maxval(abs(newton%residual), mask=.not. seepage%held))//' m2/s of an offer of '// &
-      text_of(sum(supply))//' m2/s; the rain may exceed what the ground can drain')
+      text_of(sum(supply))//' m2/s; '//likely_reason(sum(supply)))
   end subroutine steady_solve
+
+  !> What keeps steady flow from being found, and what to do about it.
+  pure function likely_reason(offer) result(reason)
+    real(dp), intent(in) :: offer !! of rain [m2/s]
+    character(:), allocatable :: reason
+
+    reason = 'the soil may lose its water over much less height than a spacing: reduce &nodes '// &
+      'spacing or the retention''s alpha'
+    if (offer > 0.0_dp) reason = 'the rain may exceed what the ground can drain, or '//reason
+  end function likely_reason
 
   !> Take the water of the present pressures as stored.
   subroutine store(disc, ground, state)

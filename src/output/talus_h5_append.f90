@@ -111,27 +111,20 @@ contains
     type(status_t), intent(inout) :: status
     integer(c_int8_t), allocatable, target :: values(:)
     type(c_ptr) :: address
-    integer(hid_t) :: dataset, space, data_type
-    integer(hsize_t) :: dims(1), max_dims(1)
+    integer(hid_t) :: dataset, data_type
+    integer(hsize_t) :: length
     integer(size_t) :: bytes
     integer :: ierr, ignored
 
+    call open_series(file, source, dataset, length, status)
     if (status_failed(status)) return
-    call h5dopen_f(file%id, source, dataset, ierr)
-    if (ierr /= 0) then
-      call h5_fail(file, source, 'not found, nothing copied', status)
-      return
-    end if
-    call h5dget_space_f(dataset, space, ierr)
-    call h5sget_simple_extent_dims_f(space, dims, max_dims, ignored)
-    call h5sclose_f(space, ignored)
     call h5dget_type_f(dataset, data_type, ierr)
     call h5tget_size_f(data_type, bytes, ierr)
-    allocate (values(bytes*dims(1)))
+    allocate (values(bytes*length))
     address = c_loc(values)
     call h5dread_f(dataset, data_type, address, ierr)
     if (ierr /= 0) call h5_fail(file, source, 'could not be read', status)
-    call append_data(file, name, data_type, dims(1), address, status)
+    call append_data(file, name, data_type, length, address, status)
     call h5tclose_f(data_type, ignored)
     call h5dclose_f(dataset, ignored)
   end subroutine h5_append_series
@@ -145,22 +138,15 @@ contains
     type(c_ptr), intent(in) :: address       !! of the new values
     type(status_t), intent(inout) :: status
     integer(hid_t) :: dataset, space, piece
-    integer(hsize_t) :: dims(1), max_dims(1)
+    integer(hsize_t) :: length
     integer :: ierr, ignored
 
+    call open_series(file, name, dataset, length, status)
     if (status_failed(status)) return
-    call h5dopen_f(file%here, name, dataset, ierr)
-    if (ierr /= 0) then
-      call h5_fail(file, name, 'not found, nothing appended', status)
-      return
-    end if
-    call h5dget_space_f(dataset, space, ierr)
-    call h5sget_simple_extent_dims_f(space, dims, max_dims, ignored)
-    call h5sclose_f(space, ignored)
-    call h5dset_extent_f(dataset, dims + n, ierr)
+    call h5dset_extent_f(dataset, [length + n], ierr)
     if (ierr == 0) then
       call h5dget_space_f(dataset, space, ierr)
-      call h5sselect_hyperslab_f(space, h5s_select_set_f, dims, [n], ierr)
+      call h5sselect_hyperslab_f(space, h5s_select_set_f, [length], [n], ierr)
       call h5screate_simple_f(1, [n], piece, ierr)
       call h5dwrite_f(dataset, data_type, address, ierr, piece, space)
       call h5sclose_f(piece, ignored)
@@ -169,4 +155,29 @@ contains
     if (ierr /= 0) call h5_fail(file, name, 'could not be appended to (disk full?)', status)
     call h5dclose_f(dataset, ignored)
   end subroutine append_data
+
+  !> Open a series and tell how many values it has.
+  subroutine open_series(file, name, dataset, length, status)
+    type(h5_file_t), intent(in) :: file
+    character(*), intent(in) :: name !! path of the dataset
+    integer(hid_t), intent(out) :: dataset
+    integer(hsize_t), intent(out) :: length
+    type(status_t), intent(inout) :: status
+    integer(hid_t) :: space
+    integer(hsize_t) :: dims(1), max_dims(1)
+    integer :: ierr, ignored
+
+    dataset = -1
+    length = 0
+    if (status_failed(status)) return
+    call h5dopen_f(file%here, name, dataset, ierr)
+    if (ierr /= 0) then
+      call h5_fail(file, name, 'not found, so no series to read or lengthen', status)
+      return
+    end if
+    call h5dget_space_f(dataset, space, ierr)
+    call h5sget_simple_extent_dims_f(space, dims, max_dims, ignored)
+    call h5sclose_f(space, ignored)
+    length = dims(1)
+  end subroutine open_series
 end module talus_h5_append

@@ -9,13 +9,15 @@ module talus_bench
   use talus_bench_model, only: parts_t, parts_one_level, parts_everything
   use talus_bench_triad, only: triad_t, triad_allocate, triad_entries
   use talus_bench_measure, only: speed_t, price_t, measure_speed, measure_prices
-  use talus_bench_report, only: report_text, report_files
+  use talus_bench_report, only: report_text, report_files, report_keys
   use omp_lib, only: omp_get_num_procs
   implicit none
   private
-  public :: bench
+  public :: bench, price_name, price_parts
 
   integer, parameter :: nodes_all(4) = [2000, 20000, 200000, 1000000], nodes_quick = 20000
+  !> Node-steps of a timed block.
+  integer, parameter :: block_node_steps = 1250000
 
   !> Each row of the price list adds one part to the row above it; in the last but one, Bishop's
   !> stress takes the place of net stress.
@@ -55,11 +57,11 @@ contains
     end do
     deallocate (triad%a, triad%b, triad%c)
     call say('price list')
-    call measure_prices(price_name, price_parts, nodes_quick, price, status)
+    call measure_prices(price_name, price_parts, nodes_quick, block_node_steps, price, status)
     if (status_failed(status)) return
     write (output_unit, '(a)') report_text(speed, price, '')
     if (len(output) > 0) call report_files(output, speed, price, status)
-    call print_keys(speed)
+    write (output_unit, '(a)', advance='no') report_keys(speed, nodes_quick)
   end subroutine bench
 
   !> Measure one model and add its rows.
@@ -74,7 +76,7 @@ contains
 
     if (status_failed(status)) return
     call say(name//', '//text_of(nodes)//' nodes')
-    call measure_speed(name, parts, nodes, threads, triad, rows, status)
+    call measure_speed(name, parts, nodes, threads, block_node_steps, triad, rows, status)
     if (status_failed(status)) return
     speed = [speed, rows]
   end subroutine add
@@ -86,36 +88,4 @@ contains
     write (error_unit, '(2a)') 'bench: ', what
     flush (error_unit)
   end subroutine say
-
-  !> The lines that a script can read, of the model with about 2e4 nodes.
-  subroutine print_keys(speed)
-    type(speed_t), intent(in) :: speed(:)
-    integer :: one, two, all
-
-    one = find('one level', 1)
-    two = find('one level', 2)
-    all = find('everything', 1)
-    call key('triad_GB_per_s', 1.0e-9_dp*speed(one)%triad)
-    call key('one_level_node_steps_per_s', real(speed(one)%nodes, dp)/speed(one)%step)
-    call key('one_level_roofline_fraction', sum(speed(one)%bytes)/speed(one)%step/speed(one)%triad)
-    call key('everything_node_steps_per_s', real(speed(all)%nodes, dp)/speed(all)%step)
-    call key('two_thread_speedup', speed(two)%speedup)
-
-  contains
-
-    integer function find(model, threads) result(at)
-      character(*), intent(in) :: model
-      integer, intent(in) :: threads
-
-      at = minloc(abs(speed%nodes - nodes_quick) + 1000000*abs(speed%threads - threads), dim=1, &
-                  mask=speed%model == model)
-    end function find
-
-    subroutine key(name, value)
-      character(*), intent(in) :: name
-      real(dp), intent(in) :: value
-
-      write (output_unit, '(3a)') name, ' = ', text_of(value, 4)
-    end subroutine key
-  end subroutine print_keys
 end module talus_bench

@@ -48,7 +48,8 @@ contains
       end if
       bytes(phase_stress) = stress_bytes(session)*n
       if (disc%stabilised) then
-        bytes(phase_stabilise) = bytes(phase_stabilise) + 172.0_dp*n + 28.0_dp*real(size(disc%stabilise%node), dp)
+        bytes(phase_stabilise) = bytes(phase_stabilise) + 172.0_dp*n &
+          + 28.0_dp*real(size(disc%stabilise%node), dp)
         bytes(phase_force) = bytes(phase_force) + 16.0_dp*n
       end if
       if (session%ground%wet) then

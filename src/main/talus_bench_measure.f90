@@ -18,8 +18,8 @@ module talus_bench_measure
   public :: speed_t, price_t, measure_speed, measure_prices, median
 
   integer, parameter, public :: rounds = 5
-  !> Node-steps of a timed block, and its fewest steps.
-  integer, parameter :: block_node_steps = 1250000, fewest_steps = 3
+  !> Fewest steps of a timed block.
+  integer, parameter :: fewest_steps = 3
   !> Soil steps before the first timing.
   integer, parameter :: warm_steps = 40
 
@@ -51,10 +51,11 @@ module talus_bench_measure
 contains
 
   !> Speed of one model on each of several numbers of threads, the first of which is 1.
-  subroutine measure_speed(name, parts, nodes, threads, triad, speed, status)
+  subroutine measure_speed(name, parts, nodes, threads, block, triad, speed, status)
     character(*), intent(in) :: name
     type(parts_t), intent(in) :: parts
     integer, intent(in) :: nodes, threads(:)
+    integer, intent(in) :: block !! node-steps of a timed block
     type(triad_t), intent(inout) :: triad
     type(speed_t), allocatable, intent(out) :: speed(:) !! one a number of threads
     type(status_t), intent(inout) :: status
@@ -71,7 +72,7 @@ contains
     allocate (phase(rounds, phases, size(threads)), source=0.0_dp)
     call bench_prepare(parts, nodes, warm_steps, session, water_step, status)
     if (status_failed(status)) return
-    steps = max(fewest_steps, block_node_steps/session%disc%n)
+    steps = max(fewest_steps, block/session%disc%n)
     speed%model = name
     speed%nodes = session%disc%n
     speed%threads = threads
@@ -103,10 +104,11 @@ contains
   end subroutine measure_speed
 
   !> Prices of models, on one thread; the first is the unit.
-  subroutine measure_prices(names, parts, nodes, price, status)
+  subroutine measure_prices(names, parts, nodes, block, price, status)
     character(*), intent(in) :: names(:)
     type(parts_t), intent(in) :: parts(:)
     integer, intent(in) :: nodes
+    integer, intent(in) :: block !! node-steps of a timed block
     type(price_t), intent(out) :: price(:)
     type(status_t), intent(inout) :: status
     type(session_t), allocatable :: session(:)
@@ -123,7 +125,7 @@ contains
     end do
     do r = 1, rounds
       do i = 1, size(parts)
-        steps = max(fewest_steps, block_node_steps/session(i)%disc%n)
+        steps = max(fewest_steps, block/session(i)%disc%n)
         whole(r, i) = block_seconds(session(i), steps, parts(i)%audit)
         if (parts(i)%water) whole(r, i) = whole(r, i) &
           + session(i)%motion%step/water_step(i)*seepage_seconds(session(i), water_step(i))

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The targets of speed beside what was measured: the first table of the speed report.
 module talus_bench_reach
-  use talus_kinds, only: dp
+  use talus_kinds, only: dp, i8
   use talus_text, only: text_of
   use talus_timer, only: timer_seconds
   use talus_bench_bytes, only: phase_second, phase_seepage
@@ -72,8 +72,10 @@ contains
     if (min(i, small, before) == 0) return
     set_up = seconds(speed(i))
     earlier = seconds(speed(before))
-    text = most(model//', 1e6 nodes: GB', 3.0_dp, 1.0e-9_dp*real(speed(i)%peak, dp)) &
-      //most(model//': time per node-step at 1e6 nodes over that at 2e4', 1.3_dp, &
+    ! The system may not tell how much memory was held.
+    if (speed(i)%peak > 0_i8) text = most(model//', 1e6 nodes: GB', 3.0_dp, &
+                                          1.0e-9_dp*real(speed(i)%peak, dp))
+    text = text//most(model//': time per node-step at 1e6 nodes over that at 2e4', 1.3_dp, &
              rate(speed(small))/rate(speed(i))) &
       //most(model//', 1e6 nodes: set-up with the first stable step, s', 20.0_dp, set_up) &
       //line(model//': set-up of 1e6 nodes over that of 2e5', 'O(N): about ' &
@@ -111,8 +113,13 @@ contains
     real(dp), intent(in) :: limit, value
     character(:), allocatable :: text
 
-    text = line(what, '<= '//text_of(limit, digits), text_of(value, digits), value <= limit, &
-                value/max(limit, tiny(1.0_dp)))
+    if (limit > 0.0_dp) then
+      text = line(what, '<= '//text_of(limit, digits), text_of(value, digits), value <= limit, &
+                  value/limit)
+    else
+      ! No number of times nothing.
+      text = line(what, '<= '//text_of(limit, digits), text_of(value, digits), value <= limit)
+    end if
   end function most
 
   !> A row of the table.

@@ -7,6 +7,7 @@ module talus_bench_report
   use talus_text, only: text_of
   use talus_timer, only: timer_names, timer_seconds
   use talus_place, only: place_folder
+  use talus_read_file, only: file_read
   use talus_file, only: file_replace
   use talus_version, only: version, git_hash
   use talus_bench_bytes, only: phases, phase_name
@@ -14,9 +15,10 @@ module talus_bench_report
   use talus_bench_reach, only: reach_text, reach_traffic
   implicit none
   private
-  public :: report_text, report_files
+  public :: report_text, report_files, report_keys
 
   character, parameter :: nl = new_line('a')
+  integer, parameter :: notes_most_bytes = 4000000
 
 contains
 
@@ -50,22 +52,54 @@ contains
     call file_replace(folder//'/price.csv', price_csv(price), status)
   end subroutine report_files
 
+  !> The lines that a script can read, of the models with about so many nodes.
+  function report_keys(speed, nodes) result(text)
+    type(speed_t), intent(in) :: speed(:)
+    integer, intent(in) :: nodes
+    character(:), allocatable :: text
+
+    associate (one => speed(found('one level', 1)), two => speed(found('one level', 2)), &
+               all => speed(found('everything', 1)))
+      text = key('triad_GB_per_s', 1.0e-9_dp*one%triad) &
+        //key('one_level_node_steps_per_s', rate(one, one%step)) &
+        //key('one_level_roofline_fraction', fraction_of(one)) &
+        //key('everything_node_steps_per_s', rate(all, all%step)) &
+        //key('two_thread_speedup', two%speedup)
+    end associate
+
+  contains
+
+    !> Row of a model next to the size and number of threads.
+    pure integer function found(model, threads) result(at)
+      character(*), intent(in) :: model
+      integer, intent(in) :: threads
+
+      at = minloc(abs(speed%nodes - nodes) + 1000000*abs(speed%threads - threads), dim=1, &
+                  mask=speed%model == model)
+    end function found
+
+    pure function key(name, value) result(line)
+      character(*), intent(in) :: name
+      real(dp), intent(in) :: value
+      character(:), allocatable :: line
+
+      line = name//' = '//text_of(value, 4)//nl
+    end function key
+  end function report_keys
+
   !> Text of NOTES.md in a folder, and an empty line; nothing without that file.
   function notes_of(folder) result(notes)
     character(*), intent(in) :: folder
     character(:), allocatable :: notes
-    character(1000) :: line
-    integer :: unit, failed
+    character(:), allocatable :: problem
 
-    notes = ''
-    open (newunit=unit, file=folder//'/NOTES.md', status='old', action='read', iostat=failed)
-    if (failed /= 0) return
-    do
-      read (unit, '(a)', iostat=failed) line
-      if (failed /= 0) exit
-      notes = notes//trim(line)//nl
-    end do
-    close (unit)
+    call file_read(folder//'/NOTES.md', 'the working folder', 'notes', notes_most_bytes, notes, &
+                   problem)
+    if (len(problem) > 0) then
+      notes = ''
+      return
+    end if
+    if (notes(len(notes):) /= nl) notes = notes//nl
     notes = notes//nl
   end function notes_of
 
@@ -133,7 +167,8 @@ contains
     do i = 1, size(speed)
       text = text//start(speed(i))//number(reach_traffic(speed(i))/real(speed(i)%nodes, dp)) &
         //number(1.0e-9_dp*reach_traffic(speed(i))/speed(i)%step) &
-        //number(1.0e-9_dp*speed(i)%triad)//number(fraction_of(speed(i)))//number(speed(i)%speedup/real(speed(i)%threads, dp)) &
+        //number(1.0e-9_dp*speed(i)%triad)//number(fraction_of(speed(i))) &
+        //number(speed(i)%speedup/real(speed(i)%threads, dp)) &
         //number(real(speed(i)%peak, dp)/real(speed(i)%nodes, dp))//nl
     end do
   end function roofline_table

@@ -95,7 +95,8 @@ contains
     integer :: failed
 
     session%state = session%last_good
-    call soil_step(session%disc, session%ground, session%motion, session%state, session%work, failed)
+    call soil_step(session%disc, session%ground, session%motion, session%state, session%work, &
+      failed)
   end subroutine start_again
 
   !> Time of one step [s], from `steps` steps that start at the state saved in the session.

@@ -68,7 +68,8 @@ contains
       ' s on this machine, within a factor of about 3'
     if (estimate%slide > 0.0_dp) write (output_unit, '(2a)') '  if a storm fails        ', &
       text_of(estimate%slide, 3)//' s more, with the search for the time of failure'
-    write (output_unit, '(2a)') 'output                    ', text_of(ceiling(estimate%snapshots, i8))// &
+    write (output_unit, '(2a)') 'output                    ', &
+      text_of(ceiling(estimate%snapshots, i8))// &
       ' snapshots at most, '//text_of(estimate%bytes*1.0e-6_dp, 3)//' MB on disk'
     if (estimate%snapshots > many_snapshots .or. estimate%bytes > many_bytes) &
       write (output_unit, '(a)') &

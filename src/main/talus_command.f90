@@ -4,7 +4,7 @@ module talus_command
   use talus_status, only: status_t, status_set, status_failed, status_deck
   implicit none
   private
-  public :: command_t, command_read, command_help
+  public :: command_t, word_t, command_read, command_parse, command_help
 
   type :: command_t
     character(:), allocatable :: word     !! run, check, keys, manual, bench, version or help
@@ -16,20 +16,41 @@ module talus_command
     logical :: quick = .false.            !! bench: one size only
   end type command_t
 
+  !> One argument, with the blanks that it may end with.
+  type :: word_t
+    character(:), allocatable :: text
+  end type word_t
+
 contains
 
-  !> Read the command line; every fault is reported with what is allowed.
+  !> Read the command line.
   subroutine command_read(command, status)
     type(command_t), intent(out) :: command
     type(status_t), intent(inout) :: status
-    character(:), allocatable :: word
+    type(word_t), allocatable :: words(:)
+    integer :: i, length
+
+    allocate (words(command_argument_count()))
+    do i = 1, size(words)
+      call get_command_argument(i, length=length)
+      allocate (character(length) :: words(i)%text)
+      if (length > 0) call get_command_argument(i, words(i)%text)
+    end do
+    call command_parse(words, command, status)
+  end subroutine command_read
+
+  !> Understand the arguments; every fault is reported with what is allowed.
+  subroutine command_parse(words, command, status)
+    type(word_t), intent(in) :: words(:)
+    type(command_t), intent(out) :: command
+    type(status_t), intent(inout) :: status
     integer :: i
 
     command%word = 'help'
     command%argument = ''
     command%output = ''
-    if (command_argument_count() == 0) return
-    command%word = argument(1)
+    if (size(words) == 0) return
+    command%word = words(1)%text
     select case (command%word)
     case ('run', 'check', 'keys', 'manual', 'bench', 'version', 'help')
     case ('--version', '-V')
@@ -42,14 +63,13 @@ contains
       return
     end select
     i = 2
-    do while (i <= command_argument_count() .and. .not. status_failed(status))
-      word = argument(i)
-      if (.not. is_taken(command, word)) then
-        call status_set(status, status_deck, 'unexpected "'//word//'" after '//command%word// &
-          '; allowed: '//takes(command%word))
+    do while (i <= size(words) .and. .not. status_failed(status))
+      if (.not. is_taken(command, words(i)%text)) then
+        call status_set(status, status_deck, 'unexpected "'//words(i)%text//'" after '// &
+          command%word//'; allowed: '//takes(command%word))
         return
       end if
-      select case (word)
+      select case (words(i)%text)
       case ('--overwrite')
         command%overwrite = .true.
       case ('--spectrum')
@@ -57,20 +77,20 @@ contains
       case ('--quick')
         command%quick = .true.
       case ('--threads')
-        call read_threads(i + 1, command%threads, status)
+        call read_threads(following(words, i), command%threads, status)
         i = i + 1
       case ('--output')
-        call read_folder(i + 1, command%output, status)
+        call read_folder(following(words, i), command%output, status)
         i = i + 1
       case default
-        command%argument = word
+        command%argument = words(i)%text
       end select
       i = i + 1
     end do
     if ((command%word == 'run' .or. command%word == 'check') .and. len(command%argument) == 0) &
       call status_set(status, status_deck, command%word//' needs a deck: talus '//command%word// &
         ' DECK')
-  end subroutine command_read
+  end subroutine command_parse
 
   !> What may follow a word.
   pure function takes(word) result(text)
@@ -106,25 +126,23 @@ contains
   end function is_taken
 
   !> Folder for results; an option in its place was surely not meant as one.
-  subroutine read_folder(place, folder, status)
-    integer, intent(in) :: place
+  subroutine read_folder(text, folder, status)
+    character(*), intent(in) :: text
     character(:), allocatable, intent(out) :: folder
     type(status_t), intent(inout) :: status
 
-    folder = argument(place)
+    folder = text
     if (len(folder) == 0 .or. index(folder, '-') == 1) call status_set(status, status_deck, &
       '--output '//folder//': allowed: a folder (./-name when its name starts with -)')
   end subroutine read_folder
 
   !> Number of threads.
-  subroutine read_threads(place, threads, status)
-    integer, intent(in) :: place
+  subroutine read_threads(text, threads, status)
+    character(*), intent(in) :: text
     integer, intent(out) :: threads
     type(status_t), intent(inout) :: status
     integer :: failed
-    character(:), allocatable :: text
 
-    text = argument(place)
     threads = 0
     failed = 1
     if (len(text) > 0 .and. verify(text, '0123456789') == 0) read (text, *, iostat=failed) threads
@@ -132,16 +150,15 @@ contains
       '--threads '//text//': allowed: a whole number from 1 to 1024')
   end subroutine read_threads
 
-  !> One argument, '' when there is none.
-  function argument(place) result(text)
+  !> The argument after one, '' when there is none.
+  pure function following(words, place) result(text)
+    type(word_t), intent(in) :: words(:)
     integer, intent(in) :: place
     character(:), allocatable :: text
-    integer :: length
 
-    call get_command_argument(place, length=length)
-    allocate (character(length) :: text)
-    if (length > 0) call get_command_argument(place, text)
-  end function argument
+    text = ''
+    if (place < size(words)) text = words(place+1)%text
+  end function following
 
   !> What the program can do.
   subroutine command_help

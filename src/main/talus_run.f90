@@ -29,7 +29,7 @@ module talus_run
   use talus_version, only: version, git_hash
   implicit none
   private
-  public :: run_prepare, run_deck
+  public :: run_prepare, run_open, run_deck
 
 contains
 
@@ -93,7 +93,7 @@ contains
     call timer_start(session%timer, 'stages')
     call place_folder(base, status)
     if (status_failed(status)) return
-    call open_results(session, overwrite, status)
+    call run_open(session, overwrite, status)
     if (status_failed(status)) return
     slides = .false.
     do i = 1, size(deck%stage)
@@ -185,7 +185,7 @@ contains
   end function expected_snapshots
 
   !> Create the result file with all that does not change, and the history.
-  subroutine open_results(session, overwrite, status)
+  subroutine run_open(session, overwrite, status)
     type(session_t), intent(inout) :: session
     logical, intent(in) :: overwrite
     type(status_t), intent(inout) :: status
@@ -204,5 +204,5 @@ contains
     end associate
     if (status_failed(status)) return
     call record_start(session, status)
-  end subroutine open_results
+  end subroutine run_open
 end module talus_run

@@ -53,7 +53,8 @@ contains
     character(*), intent(in) :: folder !! that a relative path starts from
     character(:), allocatable :: problem
     logical :: exists
-    integer :: unit, iostat, bytes
+    integer :: unit, iostat
+    integer(i8) :: bytes
 
     problem = ''
     inquire (file=path//'/.', exist=exists)
@@ -74,7 +75,7 @@ contains
     end if
     inquire (unit=unit, size=bytes)
     close (unit)
-    if (bytes <= 0) problem = 'the file is empty; allowed: a file with content'
+    if (bytes <= 0_i8) problem = 'the file is empty; allowed: a file with content'
   end function file_problem
 
   !> A text without the byte-order mark that some editors put before it.

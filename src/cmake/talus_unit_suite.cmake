@@ -17,8 +17,8 @@ else()
   target_link_libraries(talus_funit PRIVATE talus_options)
 endif()
 
-# Small models and runs that the suites share.
-add_library(talus_models STATIC unit/models.f90 unit/runs.f90 unit/speeds.f90)
+# Small models, decks and runs that the suites share.
+add_library(talus_models STATIC unit/models.f90 unit/decks.f90 unit/runs.f90 unit/speeds.f90)
 set_target_properties(talus_models PROPERTIES
   Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/models")
 target_include_directories(talus_models PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/models")

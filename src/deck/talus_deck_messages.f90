@@ -41,7 +41,7 @@ contains
     call append(messages, .true., line, text)
   end subroutine messages_error
 
-  !> Add an error for each line of a text.
+  !> Add an error for each line of a text that is not blank.
   subroutine messages_lines(messages, line, subject, text)
     type(messages_t), intent(inout) :: messages
     integer, intent(in) :: line        !! line in the file, 0 for none
@@ -50,9 +50,10 @@ contains
 
     first = 1
     do while (first <= len(text))
-      last = first + index(text(first:), new_line('a')) - 2
-      if (last < first) last = len(text)
-      call append(messages, .true., line, subject//': '//text(first:last))
+      last = index(text(first:), new_line('a')) + first - 2
+      if (last < first - 1) last = len(text)
+      if (text(first:last) /= '') call append(messages, .true., line, &
+        subject//': '//text(first:last))
       first = last + 2
     end do
   end subroutine messages_lines

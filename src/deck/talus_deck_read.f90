@@ -132,7 +132,7 @@ contains
     integer :: group, added
 
     do group = 1, store%table%n_groups
-      if (any(store%section(:store%count)%group == group)) cycle
+      if (store_first(store, store%table%group(group)%name) > 0) cycle
       if (store%table%group(group)%required) then
         call messages_error(messages, 0, '&'//store%table%group(group)%name// &
           ': missing group; allowed: one'// &
@@ -197,9 +197,9 @@ contains
             call report_error(store, section, key%name, 'missing key'//used_when(key%when), &
                 messages)
           else if (here%value(k)%is_given .and. .not. is_used) then
-            if (controller_is_wrong(store, section, key%when)) cycle
+            if (controller_is_wrong(store, section, unmet_condition(store, section, k))) cycle
             call report_warning(store, section, key%name, 'has no effect; used only'// &
-                                used_when(key%when), messages)
+                                used_when(unmet_condition(store, section, k)), messages)
           end if
         end associate
       end do
@@ -223,6 +223,18 @@ contains
       end if
     end do
   end function used_when
+
+  !> The condition for which a key is not used: its own, or that of the key it asks about.
+  pure recursive function unmet_condition(store, section, k) result(when)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section, k !! k: position in section%value
+    character(:), allocatable :: when
+    integer :: other
+
+    when = store%table%key(store%table%group(store%section(section)%group)%first + k - 1)%when
+    other = store_value(store, section, when(:index(when, '=')-1))
+    if (.not. store_is_used(store, section, other)) when = unmet_condition(store, section, other)
+  end function unmet_condition
 
   !> True when the key that a condition asks about was refused or is missing.
   pure logical function controller_is_wrong(store, section, when) result(is_wrong)

@@ -96,7 +96,7 @@ contains
     integer :: i, group
 
     group = table_group_index(store%table, name)
-    found = pack([(i, i=1, store%count)], store%section(:store%count)%group == group)
+    found = pack([(i, i=1, store%count)], [(store%section(i)%group == group, i=1, store%count)])
   end subroutine store_sections
 
   !> Index in store%section of the first section of a group, 0 when there is none.

@@ -154,7 +154,7 @@ contains
       if (is_space(text(at:at)) .or. text(at:at) == newline) exit
       if (depth == 0 .and. index('=,/!&''"', text(at:at)) > 0) exit
       if (text(at:at) == '(') depth = depth + 1
-      if (text(at:at) == ')') depth = depth - 1
+      if (text(at:at) == ')') depth = max(0, depth - 1)
       at = at + 1
     end do
     word = text(start:at-1)

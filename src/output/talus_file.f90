@@ -92,6 +92,7 @@ contains
       if (c_rename(part//c_null_char, path//c_null_char) /= 0) then
         failed = 1
         reason = 'could not rename '//part
+        call file_delete(part)
       end if
     end if
     if (failed /= 0) call status_set(status, status_io, &

@@ -3,18 +3,35 @@
 
 The failure line is the contour of the displacement (since the gate was taken away) of 1.5 mm in the reference
 configuration: 1.5 % of the height, five times the settlement rho g H^2/E of elastic rods, and the size of
-what a photograph of the experiment shows. It is read at the end, when the mass has come to rest. The error is
-the largest distance of the five measured points from that line. The rods land on the table in front of the
-gate (`floor`): without it the toe falls on, the heap has no foot and the line goes on moving into the pile.
+what a photograph of the experiment shows; how it was read there is not known to us. It is taken at the end,
+when nothing moves any more. The error is the largest distance of the five measured points from that line.
+The rods land on the table in front of the gate (`floor`): without it the toe falls on, the heap has no foot
+and the line goes on moving into the pile.
 
-Asked for are 5 mm. The kernel is purely material, so that the flowing rods (strains of several hundred
-per cent) are beyond what it should be trusted with, and the final surface is drawn, not judged. With a
-spacing of 2.5 mm a node of the flowing tongue turns inside out after 0.22 s.
+Asked for are 5 mm, and they are missed at every spacing, down to 2 mm (8.2 mm, run once), over which the line
+settles: its points move by 1.5 mm at most from 4 to 2.5 mm, and by 0.9 mm from there to 2 mm. It is flatter
+than the measured one, 27.5 degrees in place of 32.4. Its lower end forms within the first 0.1 s, with the
+first wedge, and its upper end last, while the surface behind it runs off until 0.9 s. So the two ends answer
+to different things: friction and dilation move the upper one (5 mm for a degree of friction), the threshold
+and the stress at rest the lower one, and no single cause that is run below brings both within 5 mm. The best
+of all thresholds misses, too. At rest the whole pile yields already: between rigid walls the cone allows no
+stress ratio below (1 - sqrt(3) alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu).
+
+A softer stabilisation looks better, 5.1 mm with a floor of 0.002 at 2.5 mm and 4.3 mm at 2 mm (run once), and
+is not taken, for reasons other than the line. The tongue then leaves the table (by 7 to 25 mm at 2 mm), comes
+down at 0.27 s, when a tenth of the kinetic energy is lost in 12 ms, and upon this the wedge slips by another
+millimetre; and flowing rods swell, which at psi = 0 they should not: by 15 % at 2 mm, and the more, the finer
+the spacing. The swelling is measured below. From a floor of 2e-4 downwards the alternation of nodes breaks
+out at 6.7 mm, and the line with it.
+
+The kernel is purely material, so that the flowing rods (strains of several hundred per cent) are beyond what
+it should be trusted with, and the final surface is drawn, not judged.
 """
 
 import sys
 
 import contourpy
+import h5py
 import numpy as np
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
@@ -32,6 +49,29 @@ MEASURED = np.loadtxt(case.folder / "failure_line.csv", delimiter=",", skiprows=
 SURFACE = np.loadtxt(case.folder / "final_surface.csv", delimiter=",", skiprows=2)
 FLOOR = "  where = 'all'\n  floor = 0.0\n  stages = 'collapse'\n"
 NO_FLOOR = "  where = 'bottom'\n  displacement = 'fixed'\n  stages = 'collapse'\n"
+PHI = 19.8
+SOFT = [("&soil\n", "&smoothing\n  stabilisation_floor = 0.002\n/\n&soil\n")]
+BOTTOM = "&boundary\n  where = 'bottom'"
+LATERAL_1 = "&initial\n  stress = 'k0'\n  lateral_stress_ratio = 1.0\n/\n"
+
+
+def friction(degrees):
+    return [(f"friction_angle = {PHI}", f"friction_angle = {degrees}")]
+
+
+# What the line hangs on. The cone of the paper has alpha = tan(phi)/sqrt(9 + 12 tan^2 phi), which is that of
+# associated flow; rods without dilation yield on it as if their friction were 19.41 degrees.
+VARIATIONS = {
+    "friction 18.8 degrees": friction(18.8),
+    "friction 20.8 degrees": friction(20.8),
+    "cone of Bui et al. (19.41 degrees)": friction(19.41),
+    "dilation 2 degrees": [("dilation_angle = 0.0", "dilation_angle = 2.0")],
+    "moduli divided by 4": [("youngs_modulus = 0.84e6", "youngs_modulus = 0.21e6")],
+    "stress at rest from K = 1": [(BOTTOM, LATERAL_1 + BOTTOM)],
+    "local damping 0.1": [("kind = 'dynamic'", "kind = 'dynamic'\n  damping = 0.1")],
+    "two levels, ell = 15 mm": [("&soil\n", "&smoothing\n  levels = 2\n  length = 0.015\n/\n&soil\n")],
+    "stabilisation floor 0.002": SOFT,
+}
 
 
 def failure_line(result, moved=MOVED, time=None):
@@ -40,8 +80,25 @@ def failure_line(result, moved=MOVED, time=None):
     size = np.hypot(*result.field("displacement", time=time).T)
     order = np.lexsort((result.nodes[:, 0], result.nodes[:, 1]))
     grid = np.log(np.maximum(size[order].reshape(len(y), len(x)), 1e-9))
-    lines = contourpy.contour_generator(x, y, grid).lines(np.log(moved))
+    return longest(contourpy.contour_generator(x, y, grid).lines(np.log(moved)))
+
+
+def longest(lines):
     return max(lines, key=lambda line: np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+
+
+def least_miss(result):
+    """Smallest error that any threshold of the displacement gives [m], and that threshold [m]."""
+    thresholds = np.geomspace(2e-4, 2e-2, 41)
+    return min((abs(distances(failure_line(result, moved))).max(), moved) for moved in thresholds)
+
+
+def swelling(result):
+    """Mean det F - 1 of the soil that flows (plastic strain above 0.1), which is none at psi = 0."""
+    with h5py.File(result.path) as file:
+        f = file["restart"][result.snapshots()[-1]]["f"][:]
+    flows = result.area * (result.field("plastic_strain") > 0.1)
+    return np.average(f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2], weights=flows) - 1.0
 
 
 def distances(line):
@@ -66,10 +123,10 @@ def told(apart):
     return ", ".join(f"{1e3 * d:+.1f}" for d in apart) + " mm"
 
 
-SPACINGS = (HEIGHT / 15, HEIGHT / 20, HEIGHT / 25) if case.full else (HEIGHT / 15,)
-lines = {}
+SPACINGS = (HEIGHT / 15, HEIGHT / 20, HEIGHT / 25, HEIGHT / 40) if case.full else (HEIGHT / 15,)
+lines, results = {}, {}
 for h in SPACINGS:
-    result = collapse(h)
+    results[h] = result = collapse(h)
     lines[h] = failure_line(result)
     apart = distances(lines[h])
     case.study("one level, with floor", result, h, abs(apart).max() / HEIGHT)
@@ -77,10 +134,18 @@ for h in SPACINGS:
     case.check(
         f"h = {1e3 * h:.1f} mm, at rest: fastest node [m/s]",
         np.hypot(*result.field("velocity").T).max(),
-        0.3,
+        0.02,
         "of sqrt(g H) = 1",
     )
     case.check("energy error", float(result.summary["energy_error"]), 1e-3, "also on landing")
+at_rest = result.field("stress", time=0.0)
+cone = np.sin(np.radians(PHI)) / np.sqrt(3.0)  # sqrt(3) alpha at psi = 0
+case.check(
+    "pile at rest: lateral over vertical stress, off that of yield between rigid walls",
+    abs(np.median(at_rest[:, 0] / at_rest[:, 1]) / ((1.0 - cone) / (1.0 + 2.0 * cone)) - 1.0),
+    0.01,
+    "exact for horizontal layers",
+)
 case.target(
     f"failure line [m], h = {1e3 * h:.1f} mm",
     abs(apart).max(),
@@ -92,6 +157,7 @@ case.target(
 
 if case.full:
     sweep = {moved: abs(distances(failure_line(result, moved))).max() for moved in (1e-3, 1.5e-3, 2e-3, 3e-3)}
+    best, threshold = least_miss(result)
     case.note(
         f"S4 misses 5 mm by {1e3 * abs(apart).max() - 5.0:.1f} mm: from the top down the line of h = "
         f"{1e3 * h:.1f} mm lies {told(apart)} over the measured points, with the upper end too deep in the "
@@ -99,8 +165,20 @@ if case.full:
         + ", ".join(f"{1e3 * m:g}" for m in sweep)
         + " mm as threshold give "
         + ", ".join(f"{1e3 * e:.1f}" for e in sweep.values())
-        + " mm. Tried without gain: stabilisation 0.2, a floor of 0.2 for it, damping 0.05, two levels with "
-        "ell = 15 mm."
+        + f" mm; the best of all from 0.2 to 20 mm is {1e3 * threshold:.1f} mm, with {1e3 * best:.1f} mm."
+    )
+    runs = {"as in the deck": results[HEIGHT / 20]}
+    for title, change in VARIATIONS.items():
+        runs[title] = collapse(HEIGHT / 20, change, name=f"variation_{len(runs)}")
+    runs[f"as in the deck, h = {1e3 * h:.1f} mm"] = result
+    runs[f"stabilisation floor 0.002, h = {1e3 * h:.1f} mm"] = collapse(h, SOFT, name="soft")
+    case.table(
+        f"What the line hangs on (h = {1e3 * HEIGHT / 20:.0f} mm where not said)",
+        ["run", "line over the measured points, from the top down", "swelling of the flowing rods [%]"],
+        [
+            [title, told(distances(failure_line(run))), f"{100.0 * swelling(run):.1f}"]
+            for title, run in runs.items()
+        ],
     )
     bare = collapse(HEIGHT / 20, [(FLOOR, NO_FLOOR)], name="no_floor")
     apart_bare = distances(failure_line(bare))
@@ -108,7 +186,7 @@ if case.full:
     case.remedy(
         "rods that flow beyond the pile's own base; remedy: a rigid, rough floor to land on (floor)",
         f"no floor: line {told(apart_bare)} over the measured points, the toe "
-        f"{-bare.field('displacement')[:, 1].min():.2f} m below the table's level after 1 s",
+        f"{-bare.field('displacement')[:, 1].min():.2f} m below the table's level at the end",
         f"floor: {told(apart_floor)}",
         abs(apart_bare).max() > 3.0 * abs(apart_floor).max(),
     )
@@ -123,7 +201,7 @@ if case.full:
             **{f"h = {1e3 * s:.1f} mm": lines[s].T for s in SPACINGS},
             "no floor, h = 5 mm": (*failure_line(bare).T, "--"),
             "experiment, failure line": (*MEASURED.T, "ko"),
-            "top surface at the end, h = 4 mm (not judged)": (*place.T, ":"),
+            f"top surface at the end, h = {1e3 * h:.1f} mm (not judged)": (*place.T, ":"),
             "experiment, final surface": (*SURFACE.T, "k^"),
         },
     )

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What libraries must be told before the program is loaded; so the program sets it and starts once
 !> more. Threads wait for each other briefly: libgomp lets them spin at a barrier for long, which
-!> stalls a run many times over as soon as others use the cores too. Memory comes in large pages where
-!> the system has them: gathers reach over many pages, and small ones take a tenth of a step.
+!> stalls a run many times over as soon as others use the cores too. Memory comes in large pages
+!> where the system has them: gathers reach over many pages, and small ones take a tenth of a step.
 module talus_waiting
   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_intptr_t, c_char, c_ptr, c_loc, &
     c_null_ptr, c_null_char
@@ -45,8 +45,8 @@ module talus_waiting
 contains
 
   !> Start the program once more with GOMP_SPINCOUNT and GLIBC_TUNABLES set, to be called before
-  !> anything is read or written. Leaves alone what the user has set, and does nothing where the system
-  !> does not say which program this is.
+  !> anything is read or written. Leaves alone what the user has set, and does nothing where the
+  !> system does not say which program this is.
   subroutine wait_briefly
     character(kind=c_char) :: path(path_letters)
     integer(c_int) :: failed(2)

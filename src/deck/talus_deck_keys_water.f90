@@ -97,8 +97,8 @@ contains
     call key(t, 'centre_y', 'real', 'm', '0', '[-1e7, 1e7]', &
              'y of the fixed point of velocity_gradient.')
     call key(t, 'floor', 'real', 'm', '', '[-1e7, 1e7]', &
-             'Elevation y of rigid, rough ground: in a dynamic stage nodes that come down to it '// &
-             'stay there; absent: none.')
+             'Elevation y of rigid, rough ground: in a dynamic stage nodes that come down to '// &
+             'it stay there; absent: none.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
     call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
         'Traction along y, upward positive.')
@@ -179,7 +179,8 @@ contains
              'Largest velocity that counts as rest and ends the stage; 0: run to the end.', &
              'kind=dynamic')
     call key(t, 'spin', 'real', 'rad/s', '0', '[-1e3, 1e3]', &
-             'Angular velocity about its centre of mass with which the body starts.', 'kind=dynamic')
+             'Angular velocity about its centre of mass with which the body starts.', &
+             'kind=dynamic')
     call key(t, 'reset_displacement', 'logical', '', '~.true. if geostatic, else .false.', '', &
              'Set displacement and plastic strain to zero at the end of the stage.')
     call key(t, 'snapshots', 'integer', '', '10', '[0, 100000]', &

@@ -76,7 +76,8 @@ contains
     real(dp), intent(inout) :: weight(:)
     integer :: l, k
 
-    !$omp parallel do default(none) shared(two_level, x, length, weight) private(l, k) schedule(static)
+    !$omp parallel do default(none) shared(two_level, x, length, weight) private(l, k) &
+    !$omp schedule(static)
     do l = 1, size(x, 2)
       do k = two_level%offset(l), two_level%offset(l+1) - 1
         weight(k) = kernel_spline(norm2(x(:, two_level%cell(k)) - x(:, l))/length)
@@ -167,9 +168,9 @@ contains
     end do
   end subroutine sinkhorn
 
-  !> Keep symmetric weights in single precision: a step reads all of them twice and waits for memory.
-  !> Rounded alike on both sides they stay symmetric, and what they miss of the row's sum goes to the
-  !> cell itself, so that constants and areas are kept as before.
+  !> Keep symmetric weights in single precision: a step reads all of them twice and waits for
+  !> memory. Rounded alike on both sides they stay symmetric, and what they miss of the row's sum
+  !> goes to the cell itself, so that constants and areas are kept as before.
   pure subroutine round_weights(two_level, area, weight)
     type(two_level_t), intent(inout) :: two_level
     real(dp), intent(in) :: area(:), weight(:)

@@ -204,8 +204,8 @@ contains
   !! s_new), which tends to dD times the stored energy of the degraded part. With `full` and
   !! `deviatoric` it vanishes while D stands still. The positive part of a stress has no
   !! potential, so that `tensile` may store or release a little when principal axes turn.
-  pure subroutine damage_degrade(damage, elastic, n, d_old, d_new, old, new, energy_old, energy_new, &
-    released)
+  pure subroutine damage_degrade(damage, elastic, n, d_old, d_new, old, new, energy_old, &
+    energy_new, released)
     type(damage_t), intent(in) :: damage
     type(elastic_t), intent(in) :: elastic
     integer, intent(in) :: n

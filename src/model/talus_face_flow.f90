@@ -6,9 +6,9 @@
 !> - in soil whose conductivity is exponential in pressure (Gardner 1958) the steady flow between
 !>   the points is known; it weights k towards the upper point by the Langevin function of half the
 !>   Peclet number Pe = drop dk/dPhi (the exponential fit of Scharfetter & Gummel 1969);
-!> - in hydrostatic equilibrium k_g goes to dPhi/dp, so that still water stays still in any soil. The
-!>   share of that limit falls with the square of the head over the drop, and with it the small
-!>   difference that it makes in Gardner's soil.
+!> - in hydrostatic equilibrium k_g goes to dPhi/dp, so that still water stays still in any soil.
+!>   The share of that limit falls with the square of the head over the drop, and with it the
+!>   small difference that it makes in Gardner's soil.
 module talus_face_flow
   use talus_kinds, only: dp
   implicit none

@@ -4,8 +4,8 @@
 !! Deformation gradients are stored (11,12,21,22) with F_ij = dx_i/dX_j; symmetric tensors are
 !! stored (xx,yy,zz,xy) with tensorial shear. A rotation is stored as (cos, sin) of
 !! Q = [cos -sin; sin cos]. Equations: src/THEORY.md (3.1), (3.2); Hughes & Winget (1980).
-!! The plural procedures take a block of points, by component (talus_points): loops without branches,
-!! which compilers vectorise.
+!! The plural procedures take a block of points, by component (talus_points): loops without
+!! branches, which compilers vectorise.
 module talus_objective
   use talus_kinds, only: dp
   use talus_points, only: soil_points
@@ -41,8 +41,8 @@ contains
     ierr = merge(0, 1, det_mid(1) > 0.0_dp)
   end subroutine objective_increment
 
-  !> The same at n points of a block. Where det F_mid or det F_new is not positive, det_mid is returned as
-  !! zero, with no strain and no rotation.
+  !> The same at n points of a block. Where det F_mid or det F_new is not positive, det_mid is
+  !! returned as zero, with no strain and no rotation.
   pure subroutine objective_increments(n, f_old, f_new, dstrain, rotation, det_mid, det_old, &
     det_new)
     integer, intent(in) :: n

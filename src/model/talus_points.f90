@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Points that are updated together. The fields of the nodes keep the components of a node side by
-!> side, as gathers want them; blocks keep one component of all points after the other, so that loops
-!> over the points run straight through memory and compilers turn them into vector instructions.
+!> side, as gathers want them; blocks keep one component of all points after the other, so that
+!> loops over the points run straight through memory and compilers turn them into vector
+!> instructions.
 module talus_points
   use talus_kinds, only: dp
   implicit none

@@ -120,8 +120,8 @@ contains
     call soil_trial(law, 1, old, new, suction_was, suction, before, total, trial, det_mid, volume, &
                     det_new)
     volume(1) = 0.5_dp*(volume(1) + det_new(1))
-    call soil_returns(law, 1, det_mid, volume, suction, wet, before, total, trial, record, damaged, &
-                      left, energy_old, energy_new, code)
+    call soil_returns(law, 1, det_mid, volume, suction, wet, before, total, trial, record, &
+      damaged, left, energy_old, energy_new, code)
     effective = trial(1, :)
     strain = total(1, :)
     history = record(1, :)
@@ -201,8 +201,8 @@ contains
     real(dp), intent(inout) :: history(soil_points,history_size) !! see history_*
     real(dp), intent(inout) :: stress(soil_points,4) !! damaged, without pore pressure [Pa]
     real(dp), intent(inout) :: stiffness_scale(soil_points) !! stiffness left over elastic [-]
-    real(dp), dimension(soil_points), intent(inout) :: energy_old, energy_new !! stored energy before
-                                                     !! and after [J/m3]; set only with damage
+    real(dp), intent(inout) :: energy_old(soil_points) !! stored before [J/m3]; set with damage only
+    real(dp), intent(inout) :: energy_new(soil_points) !! stored after [J/m3]; set with damage only
     integer, intent(inout) :: ierr(soil_points)      !! one of soil_ok, soil_inverted, ...
     real(dp) :: trial(soil_points,4), old(soil_points,4)
     integer :: i
@@ -275,8 +275,8 @@ contains
       call damage_advance(law%damage, total, history(i, history_eqps), history(i, history_kappa), &
         history(i, history_damage))
     end do
-    call damage_degrade(law%damage, law%elastic, n, d_old, history(:, history_damage), old, stress, &
-                        energy_old, energy_new, released)
+    call damage_degrade(law%damage, law%elastic, n, d_old, history(:, history_damage), old, &
+      stress, energy_old, energy_new, released)
     do i = 1, n
       history(i, history_damage_work) = history(i, history_damage_work) + volume(i)*released(i)
       left(i) = left(i)*(1.0_dp - history(i, history_damage))

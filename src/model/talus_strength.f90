@@ -12,7 +12,8 @@ module talus_strength
   use talus_drucker_prager, only: cone_t, cones_t, cone_shape, cones_set, drucker_prager_excess
   implicit none
   private
-  public :: strength_t, strength_prepare, strength_cone, strength_cones, strength_excess, strength_at
+  public :: strength_t, strength_prepare, strength_cone, strength_cones, strength_excess, &
+    strength_at
 
   integer, parameter, public :: softening_none = 0, softening_linear = 1, &
     softening_exponential = 2, softening_table = 3

@@ -12,8 +12,8 @@ module talus_floor
 contains
 
   !> Stop for good the nodes that have come down to the floor. They stay where they are, at most one
-  !> step's travel below it, so that no force has worked on the way; the kinetic energy of the impact
-  !> is booked with the damped energy. For the rest of the stage they count as held.
+  !> step's travel below it, so that no force has worked on the way; the kinetic energy of the
+  !> impact is booked with the damped energy. For the rest of the stage they count as held.
   pure subroutine floor_land(floor, x, motion, state)
     type(floor_t), intent(in) :: floor
     real(dp), intent(in) :: x(:,:)          !! reference places [m], (2,n)
@@ -33,7 +33,8 @@ contains
     end do
   end subroutine floor_land
 
-  !> Kinetic energy (5.5) of a node at the end of a step [J/m], in the directions in which it can move.
+  !> Kinetic energy (5.5) of a node at the end of a step [J/m], in the directions in which it can
+  !> move.
   pure real(dp) function impact_energy(motion, state, i) result(energy)
     type(motion_t), intent(in) :: motion
     type(state_t), intent(in) :: state

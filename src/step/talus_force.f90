@@ -31,7 +31,8 @@ contains
     type(scni_t), intent(in) :: scni
     real(dp), contiguous, intent(in) :: r(:,:)    !! smoothed Piola stress [Pa], (4,n)
     real(dp), contiguous, intent(in) :: load(:,:) !! weight and tractions [N/m], (2,n)
-    real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n); (2,0) without
+    real(dp), contiguous, intent(in) :: stabilising(:,:) !! force of the pairs [N/m], (2,n); (2,0)
+                                                         !! without
     real(dp), contiguous, intent(inout) :: force(:,:)    !! out-of-balance force [N/m], (2,n)
 
     call gather(size(load, 2), scni%node_offset, scni%cell, scni%bt, r, load, &

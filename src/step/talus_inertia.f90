@@ -21,8 +21,8 @@ module talus_inertia
 
 contains
 
-  !> Mass of every pair c_IK [kg/m], at both of its ends in the order of dual%node_neighbour: a third
-  !> of the density times N.(X_K - X_I), where N is the normal of the face between the cells.
+  !> Mass of every pair c_IK [kg/m], at both of its ends in the order of dual%node_neighbour: a
+  !> third of the density times N.(X_K - X_I), where N is the normal of the face between the cells.
   pure function inertia_pairs(dual, x, mass) result(pair_mass)
     type(dual_t), intent(in) :: dual
     real(dp), intent(in) :: x(:,:)  !! nodes [m], (2,n)

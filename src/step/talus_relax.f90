@@ -131,11 +131,11 @@ contains
   end subroutine motion_shorten
 
   !> Relax until the out-of-balance force is below `tolerance` of the applied one, the soil has
-  !> moved by more than `moved_max`, or `steps_max` steps were taken. Soil that is squeezed thin needs a
-  !> shorter step: who takes the motion back restores `motion%step`, too. Driven nodes first travel as
-  !> far as their velocity takes them in `travel` seconds, and are then held.
-  subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, travel, state, &
-                   work, outcome)
+  !> moved by more than `moved_max`, or `steps_max` steps were taken. Soil that is squeezed thin
+  !> needs a shorter step: who takes the motion back restores `motion%step`, too. Driven nodes first
+  !> travel as far as their velocity takes them in `travel` seconds, and are then held.
+  subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, travel, &
+    state, work, outcome)
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(conditions_t), intent(in) :: conditions

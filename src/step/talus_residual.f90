@@ -23,7 +23,8 @@ contains
     real(dp), contiguous, intent(inout) :: force(:,:) !! force on the nodes [N/m], (2,n)
     real(dp), contiguous, intent(inout) :: energy(:) !! half the energy of a node's pairs [J/m], (n)
     real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
-    real(dp), contiguous, intent(in), optional :: area(:) !! cell areas, where there is one level [m2]
+    real(dp), contiguous, intent(in), optional :: area(:) !! cell areas, where there is one level
+                                                          !! [m2]
 
     if (present(area)) then
       call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
@@ -35,8 +36,8 @@ contains
   end subroutine residual_gather
 
   !> The gather on plain arrays.
-  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, divided, area, q, force, &
-    energy, loss)
+  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, divided, area, q, &
+    force, energy, loss)
     integer, intent(in) :: n, offset(*), node(*)
     real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*), area(*)
     logical, intent(in) :: divided !! by the area, which else is not read

@@ -36,8 +36,8 @@ contains
     end if
   end subroutine smooth_stress
 
-  !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their own,
-  !> so that an addition need not wait for the one before.
+  !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their
+  !> own, so that an addition need not wait for the one before.
   subroutine gather(n, offset, cell, s, rest, from, to)
     integer, intent(in) :: n, offset(*), cell(*)
     real(sp), intent(in) :: s(*)

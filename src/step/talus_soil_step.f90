@@ -2,7 +2,7 @@
 !> One explicit step of the soil (src/THEORY.md (5.1)), the file to read first:
 !>
 !>   u_n+1   = u_n + dt v_n+1/2                          motion_position
-!>   F_n+1   = 1 + G u_n+1, then W F                     strain_gradient or strain_first, smooth_gradient
+!>   F_n+1   = 1 + G u_n+1, then W F                     strain_gradient, or _first, smooth_gradient
 !>   sigma   = law(F_n, F_n+1, suction), P = J sigma F^-T  stress_update
 !>   r       = affine residual, its force and its P      residual_gather
 !>   R       = W^T P                                     smooth_stress

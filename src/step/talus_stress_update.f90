@@ -49,7 +49,8 @@ contains
       first = start
       do while (first <= last)
         alike = points_alike(disc%soil(first:last))
-        call update_block(disc, ground, disc%soil(first), coupled, first, alike, h, state, q, failed)
+        call update_block(disc, ground, disc%soil(first), coupled, first, alike, h, state, q, &
+          failed)
         first = first + alike
       end do
     end do
@@ -114,7 +115,8 @@ contains
         list(listed) = j
       end do
       if (listed > 0) call return_block(law, first, listed, list, det_mid, det_old, det_new, &
-        suction, saturation, before, strain, effective, stress, left, energy, reduced, state, failed)
+        suction, saturation, before, strain, effective, stress, left, energy, reduced, state, &
+          failed)
       call elastic_energies(law%elastic, n, effective, energy_new)
       if (law%damage%driver /= driver_none) then
         do j = 1, listed

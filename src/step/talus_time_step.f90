@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Largest stable step of the soil: 2/omega of the highest eigenfrequency of M^-1 K, found by
-!> conjugate gradients without a matrix (src/THEORY.md (5.2)). K is the elastic tangent in the present
-!> shape with stabilisation and, where the pore water moves with the soil, its stiffness.
+!> conjugate gradients without a matrix (src/THEORY.md (5.2)). K is the elastic tangent in the
+!> present shape with stabilisation and, where the pore water moves with the soil, its stiffness.
 module talus_time_step
   use talus_kinds, only: dp
   use talus_disc, only: disc_t
@@ -150,8 +150,8 @@ contains
       call force_unbalanced(disc%scni, work%y, nothing, work%stabilising, work%force)
     else
       if (disc%stabilised) then
-        call residual_gather(disc%stabilise, d, work%h, one, one, work%q, work%stabilising, energy, &
-          loss, disc%dual%area)
+        call residual_gather(disc%stabilise, d, work%h, one, one, work%q, work%stabilising, &
+          energy, loss, disc%dual%area)
       else
         call force_one_level(disc%dual%area, work%q)
       end if

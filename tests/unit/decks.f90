@@ -5,12 +5,15 @@ module decks
   use talus_text, only: text_of
   use talus_deck_table, only: table_t, key_t, table_group_index, table_key_index, &
     key_is_required, key_in_range
-  use talus_deck_messages, only: messages_t, messages_start
+  use talus_deck_messages, only: messages_t, messages_start, messages_text
+  use talus_deck_types, only: deck_t
   use talus_deck_store, only: store_t
   use talus_deck_read, only: deck_read
+  use talus_deck_derive, only: deck_derive
+  use talus_deck_fill, only: deck_fill
   implicit none
   private
-  public :: deck_store, key_named, key_default, keys_with, keys_required, limits_fault
+  public :: deck_store, deck_filled, tells, key_named, key_default, keys_with, keys_required, limits_fault
 
 contains
 
@@ -23,6 +26,34 @@ contains
     call messages_start(messages, 'deck.nml')
     call deck_read(text, store, messages)
   end subroutine deck_store
+
+  !> A deck that is read and filled but not checked yet, and messages to put the checks' own into.
+  subroutine deck_filled(text, store, deck, messages)
+    character(*), intent(in) :: text
+    type(store_t), intent(out) :: store
+    type(deck_t), intent(out) :: deck
+    type(messages_t), intent(out) :: messages
+
+    call deck_store(text, store, messages)
+    call deck_derive(store, 'deck')
+    deck%folder = ''
+    call deck_fill(store, deck)
+    call messages_start(messages, 'deck.nml')
+  end subroutine deck_filled
+
+  !> '' when there is one message, which holds a text, else all the messages.
+  function tells(messages, text) result(fault)
+    type(messages_t), intent(in) :: messages
+    character(*), intent(in) :: text
+    character(:), allocatable :: fault
+
+    fault = messages_text(messages)
+    if (messages%count == 1 .and. index(fault, text) > 0) then
+      fault = ''
+    else if (messages%count == 0) then
+      fault = 'no message'
+    end if
+  end function tells
 
   !> The record of a key that the table has.
   function key_named(table, group, name) result(key)

@@ -103,8 +103,8 @@ contains
       if (size(boundary%velocity_gradient) /= 4) then
         call complain(store, section, 'velocity_gradient', 'not four values', messages, &
                       'dvx/dx, dvx/dy, dvy/dx, dvy/dy')
-      else if (held /= 'free' .or. deck_given(boundary%velocity_x) .or. &
-               deck_given(boundary%velocity_y)) then
+      else if (any(held == [character(8) :: 'fixed', 'roller_x', 'roller_y']) .or. &
+               deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y)) then
         call complain(store, section, 'velocity_gradient', 'the motion is prescribed twice', &
                       messages, 'displacement = ''free'', no velocity_x, no velocity_y')
       end if
@@ -211,7 +211,7 @@ contains
     end do
   end subroutine check_start
 
-  !> A group that holds, loads and wets nothing.
+  !> A group that holds, loads and wets nothing, unless a key that was refused was to do so.
   subroutine check_effect(store, section, boundary, messages)
     type(store_t), intent(in) :: store
     integer, intent(in) :: section
@@ -219,11 +219,11 @@ contains
     type(messages_t), intent(inout) :: messages
     real(dp) :: loads(3)
 
+    if (any(store%section(section)%value%is_wrong)) return
     if (boundary%displacement /= 'free' .or. boundary%water /= 'none') return
     if (deck_given(boundary%velocity_x) .or. deck_given(boundary%velocity_y) .or. &
         size(boundary%velocity_gradient) > 0 .or. deck_given(boundary%floor)) return
     loads = [boundary%traction_x, boundary%traction_y, boundary%pressure]
-    if (.not. all(deck_given(loads))) return
     if (maxval(abs(loads)) > 0.0_dp) return
     call warn(store, section, 'where', 'nothing acts on this boundary', messages)
   end subroutine check_effect

@@ -55,7 +55,7 @@ contains
     real(dp), intent(out) :: saturation !! S_r [-]
     real(dp), intent(out) :: ratio      !! k_r [-]
     real(dp), intent(out) :: potential  !! Phi [Pa]
-    real(dp), intent(out) :: capacity   !! dw/dp, at least that of the saturated state [1/Pa]
+    real(dp), intent(out) :: capacity   !! dw/dp > 0 [1/Pa]
     real(dp) :: slope, excess, rise
 
     ! Water above that at the air entry, and its rise with pressure from there to zero.
@@ -65,7 +65,7 @@ contains
       saturation = content/pore
       call curve_at_saturation(curve, saturation, pressure, ratio, potential, slope)
       pressure = -pressure
-      capacity = max(pore*slope, jacobian*storage)
+      capacity = pore*slope
     else
       pressure = excess/rise - curve%entry
       if (pressure > 0.0_dp) pressure = (excess - rise*curve%entry)/(jacobian*storage)

@@ -30,7 +30,7 @@ module talus_darcy
     real(dp), allocatable :: head(:,:)     !! total head [m], (2,n); second row unused zeros
     real(dp), allocatable :: slope(:,:)    !! area times gradient of head [m2], (4,n)
     logical, allocatable :: held(:)        !! the boundary holds the pressure of the node, (n)
-    logical :: explicit_only = .false.     !! never an implicit step, and none is taken back
+    logical :: explicit_only = .false.     !! never an implicit step
     real(dp) :: safety = 0.95_dp           !! explicit step over its limit
     real(dp) :: stride = 0.0_dp            !! step that accuracy allows, 0 while unknown [s]
     real(dp) :: last = 0.0_dp              !! last explicit step, 0 for none [s]

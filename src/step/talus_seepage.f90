@@ -124,18 +124,19 @@ contains
     real(dp), intent(inout) :: step !! in: longest; out: taken [s]
     type(water_balance_t) :: water
     real(dp), allocatable :: content(:), q(:)
-    real(dp) :: moved
+    real(dp) :: moved, most
     integer :: cuts
 
     content = state%content
     q = seepage%q
     water = state%water
+    ! Whoever asks for more than the limit shall see what comes of it.
+    most = excess*max(1.0_dp, seepage%safety)
     do cuts = 0, most_cuts
       call take_step(seepage, disc, ground, inlets, time, step, state)
       call face_fluxes(seepage, disc, ground, state)
       moved = maxval(abs(state%content - content))
-      if (seepage%explicit_only) exit
-      if (step <= excess*seepage_step_limit(seepage, disc, ground, state) .and. &
+      if (step <= most*seepage_step_limit(seepage, disc, ground, state) .and. &
           moved <= 2.0_dp*content_change) exit
       if (cuts == most_cuts) exit
       step = step/cut

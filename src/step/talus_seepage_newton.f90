@@ -34,6 +34,7 @@ module talus_seepage_newton
     real(dp) :: tolerance = 1.0e-7_dp       !! of the last relative change of pressure
     integer :: most = 15                    !! iterations allowed
     logical :: balanced = .true.            !! also the water left over must be worth no more
+    real(dp) :: round_off = 0.0_dp          !! imbalance over the largest flux that counts as none
     real(dp), allocatable :: pressure(:)    !! before a line search [Pa], (n)
     type(slope_t) :: slope                  !! of the fluxes
   end type newton_t
@@ -131,6 +132,7 @@ contains
         call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
         if (free_norm(newton, seepage) <= (1.0_dp - 1.0e-4_dp*part)*before) exit
         if (change <= newton%tolerance) exit
+        if (free_norm(newton, seepage) <= newton%round_off*maxval(abs(seepage%q))) exit
         part = 0.5_dp*part
       end do
       if (change > newton%tolerance .or. halving > 1) cycle
@@ -297,6 +299,9 @@ contains
   end function free_norm
 
   !> Jacobian of the residual in band storage: row i of column j at matrix(2 band + 1 + i - j, j).
+  !> A face counts only as far as more pressure on one side drives more water to the other. Where
+  !> the fluxes (4.15) rise the other way, over dry soil far from equilibrium, Newton's method would
+  !> dry the soil that water enters, and never return.
   subroutine assemble(newton, seepage, disc, ground, rate, state)
     type(newton_t), intent(inout) :: newton
     type(seepage_t), intent(in) :: seepage
@@ -304,6 +309,7 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: rate
     type(state_t), intent(in) :: state
+    real(dp) :: slope(2)
     integer :: e, i, j, d
 
     call slope_faces(newton%slope, seepage, disc, ground, state)
@@ -315,10 +321,11 @@ contains
     do e = 1, size(disc%dual%edge_node, 2)
       i = disc%dual%edge_node(1, e)
       j = disc%dual%edge_node(2, e)
-      newton%matrix(d, i) = newton%matrix(d, i) + newton%slope%face(1, e)
-      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - newton%slope%face(1, e)
-      newton%matrix(d, j) = newton%matrix(d, j) - newton%slope%face(2, e)
-      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + newton%slope%face(2, e)
+      slope = [max(newton%slope%face(1, e), 0.0_dp), min(newton%slope%face(2, e), 0.0_dp)]
+      newton%matrix(d, i) = newton%matrix(d, i) + slope(1)
+      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - slope(1)
+      newton%matrix(d, j) = newton%matrix(d, j) - slope(2)
+      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + slope(2)
     end do
     do i = 1, disc%n
       if (.not. seepage%held(i)) cycle

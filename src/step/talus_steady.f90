@@ -27,7 +27,10 @@ module talus_steady
   !> Imbalance over the largest flux that counts as none where Newton's method circles, and the
   !> pseudo-step from which on what is stored in it counts as none [s].
   real(dp), parameter :: round_off = 1.0e-10_dp, step_settled = 1.0e9_dp
-  integer, parameter :: most_way = 20, most_end = 60, most_steps = 300
+  !> The same below which a line search has nothing to gain: pressures of dry soil, through which
+  !> next to nothing flows, settle there.
+  real(dp), parameter :: line_round_off = 1.0e-12_dp
+  integer, parameter :: most_way = 40, most_end = 60, most_steps = 300
 
 contains
 
@@ -56,6 +59,7 @@ contains
     call seepage_shape(seepage, disc, ground, inlets, state)
     call newton_prepare(newton, disc)
     newton%balanced = .false.
+    newton%round_off = line_round_off
     supply = seepage_supply(seepage, inlets, 0.0_dp, 1.0_dp)
     step = step_first
     growth = 10.0_dp

@@ -75,6 +75,16 @@ for time in TIMES:
         1e-10,
         "the front is monotone to the tolerance of the implicit steps",
     )
+results["explicit"] = case.run(
+    "broadbridge_white.nml", [("snapshots = 16", "snapshots = 16 water_step = 'explicit'")], name="explicit"
+)
+for time in TIMES:
+    case.check(
+        f"explicit steps alone: error of Theta at t = {time}",
+        error_of(results["explicit"], time),
+        1.5e-3,
+        "that of the spacing, as with implicit steps",
+    )
 start = None
 for time in TIMES:
     area = results[101].area

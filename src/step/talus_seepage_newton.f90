@@ -136,8 +136,8 @@ contains
         call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
         if (free_norm(newton, seepage) <= (1.0_dp - 1.0e-4_dp*part)*before) exit
         if (change <= newton%tolerance) exit
-        if (newton%on_the_way .and. free_norm(newton, seepage) <= round_off*maxval(abs(seepage%q))) &
-          exit
+        if (newton%on_the_way .and. &
+            free_norm(newton, seepage) <= round_off*maxval(abs(seepage%q))) exit
         part = 0.5_dp*part
       end do
       if (change > newton%tolerance .or. halving > 1) cycle
@@ -304,9 +304,10 @@ contains
   end function free_norm
 
   !> Jacobian of the residual in band storage: row i of column j at matrix(2 band + 1 + i - j, j).
-  !> On the way to a steady state a face counts only as far as more pressure on one side drives more
-  !> water to the other. Where the fluxes (4.15) answer the other way, from wet soil up into soil far
-  !> drier than at rest, Newton's method would dry the soil that water enters, and never return.
+  !> On the way to a steady state a face counts only as far as more pressure on one side drives
+  !> more water to the other. Where the fluxes (4.15) answer the other way, from wet soil up into
+  !> soil far drier than at rest, Newton's method would dry the soil that water enters, and never
+  !> return.
   subroutine assemble(newton, seepage, disc, ground, rate, state)
     type(newton_t), intent(inout) :: newton
     type(seepage_t), intent(in) :: seepage

@@ -32,7 +32,7 @@ module talus_seepage
   real(dp), parameter :: excess = 1.5_dp
   !> Most growth from one explicit step to the next, and what a rejected one is divided by.
   real(dp), parameter :: growth = 2.0_dp, cut = 8.0_dp
-  integer, parameter :: most_cuts = 7
+  integer, parameter :: most_cuts = 12
   !> Water content that an implicit step should change in a cell, and any step at most twice [-].
   real(dp), parameter :: content_change = 0.01_dp
 

@@ -34,6 +34,8 @@ module talus_seepage_newton
     real(dp) :: tolerance = 1.0e-7_dp       !! of the last relative change of pressure
     integer :: most = 15                    !! iterations allowed
     logical :: balanced = .true.            !! also the water left over must be worth no more
+    integer :: halvings = 6                 !! trials of a line search
+    logical :: on_the_way = .false.         !! only to get nearer to a steady state
     real(dp), allocatable :: pressure(:)    !! before a line search [Pa], (n)
     type(slope_t) :: slope                  !! of the fluxes
   end type newton_t
@@ -45,6 +47,9 @@ module talus_seepage_newton
   !> Inner iterations for the oblique fluxes, and their last relative change.
   integer, parameter :: most_inner = 30
   real(dp), parameter :: inner_tolerance = 1.0e-4_dp
+  !> Imbalance over the largest flux below which, on the way, a line search has nothing to gain: the
+  !> pressures of dry soil, through which next to nothing flows, settle there.
+  real(dp), parameter :: round_off = 1.0e-12_dp
   !> Iterations after which a pond or seepage face is not released again.
   integer, parameter :: patience = 12
 
@@ -126,11 +131,13 @@ contains
       change = maxval(abs(newton%change(:, 1))/(abs(newton%pressure) + pressure_scale))
       if (.not. change < huge(change)) return
       part = 1.0_dp
-      do halving = 1, 6
+      do halving = 1, newton%halvings
         state%pressure = newton%pressure + part*newton%change(:, 1)
         call evaluate(newton, seepage, disc, ground, inlets, rate, supply, state)
         if (free_norm(newton, seepage) <= (1.0_dp - 1.0e-4_dp*part)*before) exit
         if (change <= newton%tolerance) exit
+        if (newton%on_the_way .and. &
+            free_norm(newton, seepage) <= round_off*maxval(abs(seepage%q))) exit
         part = 0.5_dp*part
       end do
       if (change > newton%tolerance .or. halving > 1) cycle
@@ -297,6 +304,10 @@ contains
   end function free_norm
 
   !> Jacobian of the residual in band storage: row i of column j at matrix(2 band + 1 + i - j, j).
+  !> On the way to a steady state a face counts only as far as more pressure on one side drives
+  !> more water to the other. Where the fluxes (4.15) answer the other way, from wet soil up into
+  !> soil far drier than at rest, Newton's method would dry the soil that water enters, and never
+  !> return.
   subroutine assemble(newton, seepage, disc, ground, rate, state)
     type(newton_t), intent(inout) :: newton
     type(seepage_t), intent(in) :: seepage
@@ -304,6 +315,7 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: rate
     type(state_t), intent(in) :: state
+    real(dp) :: slope(2)
     integer :: e, i, j, d
 
     call slope_faces(newton%slope, seepage, disc, ground, state)
@@ -315,10 +327,12 @@ contains
     do e = 1, size(disc%dual%edge_node, 2)
       i = disc%dual%edge_node(1, e)
       j = disc%dual%edge_node(2, e)
-      newton%matrix(d, i) = newton%matrix(d, i) + newton%slope%face(1, e)
-      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - newton%slope%face(1, e)
-      newton%matrix(d, j) = newton%matrix(d, j) - newton%slope%face(2, e)
-      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + newton%slope%face(2, e)
+      slope = newton%slope%face(:, e)
+      if (newton%on_the_way) slope = [max(slope(1), 0.0_dp), min(slope(2), 0.0_dp)]
+      newton%matrix(d, i) = newton%matrix(d, i) + slope(1)
+      newton%matrix(d+j-i, i) = newton%matrix(d+j-i, i) - slope(1)
+      newton%matrix(d, j) = newton%matrix(d, j) - slope(2)
+      newton%matrix(d+i-j, j) = newton%matrix(d+i-j, j) + slope(2)
     end do
     do i = 1, disc%n
       if (.not. seepage%held(i)) cycle

@@ -27,7 +27,10 @@ module talus_steady
   !> Imbalance over the largest flux that counts as none where Newton's method circles, and the
   !> pseudo-step from which on what is stored in it counts as none [s].
   real(dp), parameter :: round_off = 1.0e-10_dp, step_settled = 1.0e9_dp
-  integer, parameter :: most_way = 20, most_end = 60, most_steps = 300
+  !> Trials of a line search, and those where even the first pseudo-step is too long: soil whose
+  !> water drains within a few pascals needs them to be met between dry and full.
+  integer, parameter :: least_halvings = 6, most_halvings = 16
+  integer, parameter :: most_way = 40, most_end = 60, most_steps = 300
 
 contains
 
@@ -65,6 +68,8 @@ contains
       held = seepage%held
       newton%tolerance = merge(tolerance_way, tolerance, step < step_last)
       newton%most = merge(most_way, most_end, step < step_last)
+      newton%on_the_way = step < step_last
+      newton%halvings = merge(most_halvings, least_halvings, step < step_first)
       call newton_solve(newton, seepage, disc, ground, inlets, &
         merge(1.0_dp/step, 0.0_dp, step < step_last), supply, state, converged, iterations)
       if (converged .and. step >= step_last) return
@@ -85,21 +90,21 @@ contains
       end if
     end do
     call status_set(status, status_numeric, 'pore_pressure = ''steady'': no steady seepage '// &
-      'found; last pseudo-step '//text_of(step)//' s after '//text_of(i)// &
+      'found; last pseudo-step '//text_of(step)//' s after '//text_of(min(i, most_steps))// &
       ' steps, largest imbalance '// &
       text_of(maxval(abs(newton%residual), mask=.not. seepage%held))//' m2/s of an offer of '// &
-      text_of(sum(supply))//' m2/s; '//likely_reason(sum(supply)))
+      text_of(sum(supply))//' m2/s; '//steady_advice(sum(supply)))
   end subroutine steady_solve
 
-  !> What keeps steady flow from being found, and what to do about it.
-  pure function likely_reason(offer) result(reason)
-    real(dp), intent(in) :: offer !! of rain [m2/s]
-    character(:), allocatable :: reason
+  !> What to do where no steady state was found.
+  pure function steady_advice(offer) result(text)
+    real(dp), intent(in) :: offer !! [m2/s]
+    character(:), allocatable :: text
 
-    reason = 'the soil may lose its water over much less height than a spacing: reduce &nodes '// &
-      'spacing or the retention''s alpha'
-    if (offer > 0.0_dp) reason = 'the rain may exceed what the ground can drain, or '//reason
-  end function likely_reason
+    text = 'take a smaller spacing or soil that drains less abruptly (smaller alpha or n), or '// &
+      'start with ''hydrostatic'' and let a storm stage run until the flow is steady'
+    if (offer > 0.0_dp) text = 'the rain may exceed what the ground can drain; else '//text
+  end function steady_advice
 
   !> Take the water of the present pressures as stored.
   subroutine store(disc, ground, state)

@@ -83,6 +83,18 @@ for series in SERIES if case.full else list(SERIES)[:2]:
             charny[kind] = max(against_charny, charny.get(kind, 0.0))
         if series == "grid":
             table = water_table(result)
+# Conductivity falls by exp(100) and exp(12.5) from node to node above the water table.
+for alpha, spacing in ((400.0, 0.25), (100.0, 0.125)) if case.full else ((400.0, 0.25),):
+    steep = case.run(
+        "dupuit.nml",
+        [("spacing = 0.25", f"spacing = {spacing}"), ("alpha = 100.0", f"alpha = {alpha}")],
+        name=f"steep_{alpha:g}",
+    )
+    flow = steep.history()["water_in"][-1] / EXACT - 1
+    case.check(
+        f"flow over Charny's less one, alpha = {alpha:g} /m", abs(flow), 3.4e-3, "its fringe, 1 cm at most"
+    )
+    water.append(abs(float(steep.summary["water_error"])))
 for kind, error in charny.items():
     case.target(f"error of the flow, {kind}, finest spacing", error, 0.01, "H6", asked=True)
 if case.full:

@@ -64,6 +64,20 @@ for rows in (26, 51, 101, 201, 401) if case.full else (51, 101):
     )
     error[rows] = errors(results[rows])
     case.study("two columns of nodes", results[rows], spacing, error[rows][10])
+results["explicit"] = case.run(
+    "srivastava_yeh.nml",
+    [
+        ("spacing = 0.01", "spacing = 0.02"),
+        ("snapshots = 20", "snapshots = 20 water_step = 'explicit'"),
+    ],
+    name="explicit",
+)
+case.check(
+    "explicit steps alone, 51 rows: error at any time",
+    max(errors(results["explicit"]).values()),
+    1.5e-3,
+    "0.0011 with implicit steps: that of the spacing",
+)
 case.check("error at 10 h with 101 rows", error[101][10], 0.005, "the accuracy asked for")
 case.check("error of the steady start, 101 rows", error[101][0], 0.005, "the same fluxes without storage")
 case.check(

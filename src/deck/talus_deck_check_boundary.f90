@@ -7,7 +7,7 @@ module talus_deck_check_boundary
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_exceeds, &
     deck_acts_in
-  use talus_deck_store, only: store_t, store_sections, store_value
+  use talus_deck_store, only: store_t, store_sections, store_is_wrong
   use talus_deck_check_soil, only: check_region
   use talus_deck_check_file, only: check_hydrograph
   use talus_deck_report, only: complain => report_error, warn => report_warning
@@ -111,7 +111,7 @@ contains
     end associate
   end subroutine check_motion
 
-  !> Soil lands on a floor in real time only.
+  !> Soil lands on a floor in real time only; a stage whose kind was refused may be in real time.
   subroutine check_floor(store, section, boundary, deck, messages)
     type(store_t), intent(in) :: store
     integer, intent(in) :: section
@@ -122,7 +122,8 @@ contains
 
     if (.not. deck_given(boundary%floor)) return
     do i = 1, size(deck%stage)
-      if (deck%stage(i)%kind == 'dynamic' .and. deck_acts_in(boundary, deck%stage(i)%name)) return
+      if (deck%stage(i)%kind /= 'dynamic' .and. deck%stage(i)%kind /= '') cycle
+      if (deck_acts_in(boundary, deck%stage(i)%name)) return
     end do
     call complain(store, section, 'floor', 'no stage in which it acts is dynamic', messages, &
                   'a floor with a stage of kind = ''dynamic''')
@@ -171,23 +172,15 @@ contains
       call complain(store, section, 'hydrograph', 'rain is given as well', messages, &
                     'one of rain and hydrograph')
     else if (.not. deck_given(boundary%rain) .and. len(boundary%hydrograph) == 0) then
-      if (.not. is_wrong('rain') .and. .not. is_wrong('hydrograph')) then
+      if (.not. store_is_wrong(store, section, 'rain') .and. &
+          .not. store_is_wrong(store, section, 'hydrograph')) &
         call complain(store, section, 'water', 'how much rain is not said', messages, &
                       'rain or hydrograph with it')
-      end if
     end if
     if (len(boundary%hydrograph) == 0) return
     call check_hydrograph(store, section, boundary%hydrograph, messages, table)
     if (size(table%values, 2) > 0) call check_start(store, section, boundary, table%values(1, 1), &
                                                     deck, messages)
-
-  contains
-
-    logical function is_wrong(name)
-      character(*), intent(in) :: name
-
-      is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
-    end function is_wrong
   end subroutine check_rain
 
   !> Rain that begins only when its stage is over.
@@ -244,12 +237,12 @@ contains
           do k = 1, size(deck%stage)
             if (.not. deck_acts_in(this, deck%stage(k)%name)) cycle
             if (.not. deck_acts_in(that, deck%stage(k)%name)) cycle
-            if (that%water /= 'none' .and. this%water /= 'none') then
+            if (acts(that%water, 'none') .and. acts(this%water, 'none')) then
               call warn(store, section, 'water', &
                   'overrides an earlier &boundary of the same part', &
                         messages)
               return
-            else if (that%displacement /= 'free' .and. this%displacement /= 'free') then
+            else if (acts(that%displacement, 'free') .and. acts(this%displacement, 'free')) then
               call warn(store, section, 'displacement', &
                   'an earlier &boundary also holds this part', &
                         messages)
@@ -259,5 +252,14 @@ contains
         end associate
       end do
     end associate
+
+  contains
+
+    !> True for a choice other than the idle one; a refused choice is blank.
+    pure logical function acts(choice, idle)
+      character(*), intent(in) :: choice, idle
+
+      acts = choice /= idle .and. choice /= ''
+    end function acts
   end subroutine check_repeated
 end module talus_deck_check_boundary

@@ -5,7 +5,7 @@ module talus_deck_check_model
   use talus_text, only: text_of
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_moves_soil
-  use talus_deck_store, only: store_t, store_first, store_value
+  use talus_deck_store, only: store_t, store_first, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of, extent_holds
   use talus_deck_check_file, only: check_file
   use talus_deck_report, only: complain => report_error, warn => report_warning
@@ -69,18 +69,20 @@ contains
       section, 'spacing', 'has no effect: the nodes are in the file', messages)
     if (deck%geometry%kind /= 'box' .and. deck%geometry%kind /= 'slope') return
     if (.not. deck_given(deck%nodes%spacing)) then
-      if (.not. store%section(section)%value(store_value(store, section, 'spacing'))%is_wrong) then
+      if (.not. store_is_wrong(store, section, 'spacing')) &
         call complain(store, section, 'spacing', 'missing key', messages)
-      end if
       return
     end if
     associate (g => deck%geometry, dx => deck%nodes%spacing, dy => deck%nodes%spacing_y)
-      call check_fit('spacing', dx, 'width', g%width)
-      call check_fit('spacing_y', dy, 'height', g%height)
-      call check_fit('spacing', dx, 'toe_distance', g%toe_distance)
-      call check_fit('spacing', dx, 'crest_width', g%crest_width)
-      call check_fit('spacing_y', dy, 'slope_height', g%slope_height)
-      call check_fit('spacing_y', dy, 'base_depth', g%base_depth)
+      if (g%kind == 'box') then
+        call check_fit('spacing', dx, 'width', g%width)
+        call check_fit('spacing_y', dy, 'height', g%height)
+      else
+        call check_fit('spacing', dx, 'toe_distance', g%toe_distance)
+        call check_fit('spacing', dx, 'crest_width', g%crest_width)
+        call check_fit('spacing_y', dy, 'slope_height', g%slope_height)
+        call check_fit('spacing_y', dy, 'base_depth', g%base_depth)
+      end if
       extent = extent_of(g)
       if (.not. extent%is_known .or. .not. deck_given(dy)) return
       nodes = extent%area/dx/dy
@@ -176,11 +178,11 @@ contains
 
     section = store_first(store, 'output')
     associate (x => deck%output%probe_x, y => deck%output%probe_y)
-      if (len(deck%output%directory) == 0) then
+      if (len(deck%output%directory) == 0 .and. .not. store_is_wrong(store, section, 'directory')) &
         call complain(store, section, 'directory', 'blank', messages)
-      end if
       if (size(x) /= size(y)) then
-        if (is_wrong('probe_x') .or. is_wrong('probe_y')) return
+        if (store_is_wrong(store, section, 'probe_x') .or. &
+            store_is_wrong(store, section, 'probe_y')) return
         call complain(store, section, 'probe_y', 'number of values '//text_of(size(y))// &
                       ', of probe_x '//text_of(size(x)), messages, 'one value for each probe_x')
         return
@@ -191,13 +193,5 @@ contains
                       text_of(y(i))//') lies outside the body', messages, 'points of the body')
       end do
     end associate
-
-  contains
-
-    logical function is_wrong(name)
-      character(*), intent(in) :: name
-
-      is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
-    end function is_wrong
   end subroutine check_output
 end module talus_deck_check_model

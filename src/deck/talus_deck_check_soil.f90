@@ -7,7 +7,7 @@ module talus_deck_check_soil
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, soil_t, damage_t, deck_given, deck_exceeds, deck_soil_index, &
     deck_water_index, deck_damage_index
-  use talus_deck_store, only: store_t, store_sections
+  use talus_deck_store, only: store_t, store_sections, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of, extent_holds
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none
@@ -30,8 +30,10 @@ contains
     do i = 1, size(at)
       associate (soil => deck%soil(i))
         do j = 1, i - 1
-          if (deck%soil(j)%name == soil%name .and. len(soil%name) > 0) call complain(store, at(i), &
-            'name', 'another soil has this name', messages, 'a name of its own')
+          if (deck%soil(j)%name /= soil%name .or. len(soil%name) == 0) cycle
+          call complain(store, at(i), 'name', 'another soil has this name', messages, &
+                        'a name of its own')
+          exit
         end do
         call check_region(store, at(i), soil%from_x, soil%to_x, soil%from_y, soil%to_y, messages)
         if (extent%is_known) call check_place(store, at(i), soil, extent, messages)
@@ -296,8 +298,11 @@ contains
           call complain(store, at(i), 'soil', 'unknown soil', messages, soil_list(deck))
         end if
         do j = 1, i - 1
-          if (deck%damage(j)%soil == damage%soil) call complain(store, at(i), 'soil', &
-            'another &damage already has this soil', messages, 'one &damage a soil')
+          if (deck%damage(j)%soil /= damage%soil) cycle
+          if (store_is_wrong(store, at(i), 'soil') .or. store_is_wrong(store, at(j), 'soil')) cycle
+          call complain(store, at(i), 'soil', 'another &damage already has this soil', messages, &
+                        'one &damage a soil')
+          exit
         end do
         if (.not. deck_exceeds(damage%kappa_f, damage%kappa_0) .and. damage%law /= 'mazars' .and. &
             all(deck_given([damage%kappa_f, damage%kappa_0]))) then

@@ -25,17 +25,17 @@ contains
     do i = 1, size(at)
       associate (stage => deck%stage(i))
         do j = 1, i - 1
-          if (deck%stage(j)%name == stage%name .and. len(stage%name) > 0) call complain(store, &
-              at(i), &
-            'name', 'another stage has this name', messages, 'a name of its own')
+          if (deck%stage(j)%name /= stage%name .or. len(stage%name) == 0) cycle
+          call complain(store, at(i), 'name', 'another stage has this name', messages, &
+                        'a name of its own')
+          exit
         end do
         call check_solve(store, at(i), stage, deck, messages)
         call check_mass(store, at(i), stage, deck, messages)
         call check_clock(store, at(i), stage, messages)
         call check_order(store, at(i), i, deck, messages)
-        if (stage%solve == 'soil' .or. stage%solve == 'both') then
+        if (stage%kind /= '' .and. (stage%solve == 'soil' .or. stage%solve == 'both')) &
           call check_support(store, at(i), stage, deck, messages)
-        end if
       end associate
     end do
   end subroutine check_stages
@@ -104,6 +104,7 @@ contains
 
     if (deck_exceeds(stage%step_safety, 1.0_dp)) call warn(store, section, 'step_safety', &
       'above 1: the motion is unstable', messages)
+    if (stage%kind /= 'storm' .and. stage%kind /= 'dynamic') return
     if (deck_exceeds(stage%water_safety, 1.0_dp)) call warn(store, section, 'water_safety', &
       'above 1: the water may be unstable', messages)
     if (stage%kind /= 'storm') return

@@ -6,7 +6,7 @@ module talus_deck_check_water
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_soil_index, deck_water_index, &
     deck_moves_soil
-  use talus_deck_store, only: store_t, store_sections, store_first
+  use talus_deck_store, only: store_t, store_sections, store_first, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of
   use talus_deck_check_file, only: check_file, check_retention
   use talus_deck_check_soil, only: soil_list
@@ -33,8 +33,11 @@ contains
           call complain(store, at(i), 'soil', 'unknown soil', messages, soil_list(deck))
         end if
         do j = 1, i - 1
-          if (deck%water(j)%soil == water%soil) call complain(store, at(i), 'soil', &
-            'another &water already has this soil', messages, 'one &water a soil')
+          if (deck%water(j)%soil /= water%soil) cycle
+          if (store_is_wrong(store, at(i), 'soil') .or. store_is_wrong(store, at(j), 'soil')) cycle
+          call complain(store, at(i), 'soil', 'another &water already has this soil', messages, &
+                        'one &water a soil')
+          exit
         end do
         if (deck_exceeds(water%saturation_residual, water%saturation_maximum - 1.0e-6_dp)) then
           call complain(store, at(i), 'saturation_residual', 'not below saturation_maximum', &
@@ -54,7 +57,7 @@ contains
     end do
     call store_sections(store, 'soil', at)
     do i = 1, size(at)
-      if (deck_water_index(deck, deck%soil(i)%name) > 0) cycle
+      if (len(deck%soil(i)%name) == 0 .or. deck_water_index(deck, deck%soil(i)%name) > 0) cycle
       call complain(store, at(i), 'name', 'this soil has no &water although others have', &
           messages, &
                     'a &water for it, or one &water with a blank soil')
@@ -90,6 +93,10 @@ contains
         return
       end if
       if (initial%pore_pressure == 'uniform') return
+      if (initial%pore_pressure == 'steady' .and. &
+          any(deck_exceeds(initial%antecedent_rain*mm_per_hour, deck%water%conductivity_y))) &
+        call warn(store, section, 'antecedent_rain', &
+                  'more than the saturated conductivity_y: the rest runs off', messages)
       call check_water_table(store, section, deck, messages)
     end associate
   end subroutine check_initial
@@ -125,6 +132,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
     type(extent_t) :: extent
+    character(:), allocatable :: key
     real(dp) :: highest
     integer :: i
 
@@ -133,27 +141,21 @@ contains
     associate (initial => deck%initial)
       if (.not. all(deck_given([initial%water_table, initial%water_table_right]))) return
       highest = max(initial%water_table, initial%water_table_right)
+      key = 'water_table'
+      if (initial%water_table < highest) key = 'water_table_right'
       if (highest > extent%top) then
-        call warn(store, section, 'water_table', &
+        call warn(store, section, key, &
             'above the body; water standing on the ground has '// &
                   'no weight here', messages)
       end if
       if (highest > extent%bottom .and. deck_moves_soil(deck)) then
         do i = 1, size(deck%soil)
           if (deck%soil(i)%stress /= 'net' .or. deck%soil(i)%from_y >= highest) cycle
-          call warn(store, section, 'water_table', 'soil '''//deck%soil(i)%name// &
+          call warn(store, section, key, 'soil '''//deck%soil(i)%name// &
               ''' has stress = '// &
                     '''net'', which knows no uplift below the water table', messages)
         end do
       end if
-      if (initial%pore_pressure /= 'steady') return
-      do i = 1, size(deck%water)
-        if (.not. deck_exceeds(initial%antecedent_rain*mm_per_hour, deck%water(i)%conductivity_y)) &
-            cycle
-        call warn(store, section, 'antecedent_rain', &
-            'more than the saturated conductivity_y: the '// &
-                  'rest runs off', messages)
-      end do
     end associate
   end subroutine check_water_table
 end module talus_deck_check_water

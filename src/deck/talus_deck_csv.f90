@@ -62,8 +62,6 @@ contains
     associate (suction => table%values(1, :), saturation => table%values(2, :), &
                conductivity => table%values(3, :))
       if (suction(1) < 0.0_dp) call refuse(table, 1, 1, 'suction_Pa', '>= 0')
-      if (abs(conductivity(1) - 1.0_dp) > 1.0e-9_dp) &
-        call refuse(table, 1, 3, 'relative_conductivity', '1 at the first point')
       do i = 1, last
         before = max(i - 1, 1)
         if (suction(i) > 1.0e9_dp) then
@@ -78,15 +76,18 @@ contains
           call refuse(table, i, 2, 'saturation', &
                       '<= '//text_of(saturation(before))//' (it falls with suction)')
         end if
-        if (conductivity(i) < conductivity_least .or. conductivity(i) > 1.0_dp) then
+        if (i == 1 .and. abs(conductivity(1) - 1.0_dp) > 1.0e-9_dp) then
+          call refuse(table, i, 3, 'relative_conductivity', '1 at the first point')
+        else if (conductivity(i) < conductivity_least .or. conductivity(i) > 1.0_dp) then
           call refuse(table, i, 3, 'relative_conductivity', '1e-20 to 1')
         else if (conductivity(i) > conductivity(before)) then
           call refuse(table, i, 3, 'relative_conductivity', &
                       '<= '//text_of(conductivity(before))//' (it falls with suction)')
         end if
       end do
-      if (saturation(last) >= saturation(1)) call refuse(table, last, 2, 'saturation', &
-        '< '//text_of(saturation(1))//' (the first one)')
+      ! A last saturation above the one before it is told already.
+      if (saturation(last) >= saturation(1) .and. saturation(last) <= saturation(last-1)) &
+        call refuse(table, last, 2, 'saturation', '< '//text_of(saturation(1))//' (the first one)')
     end associate
   end subroutine retention_check
 

@@ -10,7 +10,7 @@ module talus_deck_store
   implicit none
   private
   public :: value_t, section_t, store_t, store_add_section, store_sections, store_first, store_get
-  public :: store_value, store_line, store_is_used, real_absent
+  public :: store_value, store_line, store_is_used, store_is_wrong, real_absent
 
   !> Value of an integer key that is absent.
   integer, parameter, public :: integer_absent = -huge(1)
@@ -133,6 +133,15 @@ contains
     line = store%section(section)%value(store_value(store, section, name))%line
     if (line == 0) line = store%section(section)%line
   end function store_line
+
+  !> True when the deck gives a key that was refused: what depends on it cannot be judged.
+  pure logical function store_is_wrong(store, section, name) result(is_wrong)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section   !! index in store%section
+    character(*), intent(in) :: name !! key
+
+    is_wrong = store%section(section)%value(store_value(store, section, name))%is_wrong
+  end function store_is_wrong
 
   !> True when a key takes part: it has no condition, or its condition 'key=a|b' holds.
   pure recursive logical function store_is_used(store, section, k) result(used)

@@ -230,8 +230,24 @@ contains
     call check_length('softening_table_cohesion', size(soil%softening_table_cohesion))
     call check_length('softening_table_friction_angle', size(soil%softening_table_friction_angle))
     call check_length('softening_table_dilation_angle', size(soil%softening_table_dilation_angle))
+    if (any(deck_exceeds(at_strains(soil%softening_table_dilation_angle, soil%dilation_angle), &
+                         at_strains(soil%softening_table_friction_angle, soil%friction_angle))) &
+        .and. .not. deck_exceeds(soil%dilation_angle, soil%friction_angle)) then
+      call complain(store, section, 'softening_table_dilation_angle', &
+                    'larger than the angle of friction at a strain of the table', messages, &
+                    'at each strain, angle of dilation <= angle of friction')
+    end if
 
   contains
+
+    !> An angle at each strain: from its list, if that is as long, else the constant one.
+    pure function at_strains(list, constant) result(angles)
+      real(dp), intent(in) :: list(:), constant !! [deg]
+      real(dp) :: angles(n)
+
+      angles = constant
+      if (size(list) == n) angles = list
+    end function at_strains
 
     subroutine check_length(name, length)
       character(*), intent(in) :: name

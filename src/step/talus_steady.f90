@@ -73,7 +73,7 @@ contains
       call newton_solve(newton, seepage, disc, ground, inlets, &
         merge(1.0_dp/step, 0.0_dp, step < step_last), supply, state, converged, iterations)
       if (converged .and. step >= step_last) return
-      if (step >= step_settled .and. all(held .eqv. seepage%held) .and. &
+      if (.not. converged .and. step >= step_settled .and. all(held .eqv. seepage%held) .and. &
           maxval(abs(newton%residual), mask=.not. seepage%held) &
           <= round_off*maxval(abs(seepage%q))) return
       ! At the kink of saturated soil Newton's method may circle in the last digits.

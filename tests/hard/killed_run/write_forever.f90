@@ -40,7 +40,7 @@ program write_forever
     end do
   end do
   offset(ne+1) = 4*ne + 1
-  call result_create(result, 'killed.h5', 200, .true., .true., status)
+  call result_create(result, 'killed.h5', 400, .true., .true., status)
   call result_write_text(result, '/deck/text', '&run /', status)
   call result_write_mesh(result, nodes, spread(1, 1, n), ['silt'], spread(1.0_dp, 1, n), offset, &
     corners, status)

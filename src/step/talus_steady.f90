@@ -68,7 +68,7 @@ contains
       held = seepage%held
       newton%tolerance = merge(tolerance_way, tolerance, step < step_last)
       newton%most = merge(most_way, most_end, step < step_last)
-      newton%on_the_way = step < step_last
+      newton%on_the_way = step < step_settled
       newton%halvings = merge(most_halvings, least_halvings, step < step_first)
       call newton_solve(newton, seepage, disc, ground, inlets, &
         merge(1.0_dp/step, 0.0_dp, step < step_last), supply, state, converged, iterations)

@@ -5,7 +5,7 @@
 module talus_h5_append
   use, intrinsic :: iso_c_binding, only: c_char, c_int8_t, c_loc, c_ptr
   use hdf5, only: hid_t, hsize_t, size_t, h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, &
-    h5sget_simple_extent_dims_f, h5dcreate_f, h5dopen_f, h5dread_f, h5dwrite_f, h5dclose_f, &
+    h5dcreate_f, h5dread_f, h5dwrite_f, h5dclose_f, &
     h5dget_space_f, h5dget_type_f, h5dset_extent_f, h5tclose_f, h5tget_size_f, &
     h5pcreate_f, h5pclose_f, h5pset_create_inter_group_f, h5pset_chunk_f, &
     h5s_select_set_f, h5s_unlimited_f, h5t_native_double, h5t_native_integer, &
@@ -13,6 +13,7 @@ module talus_h5_append
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_h5_file, only: h5_file_t, h5_fail, h5_letters, h5_text_type
+  use talus_h5_read, only: h5_dataset_open
   implicit none
   private
   public :: h5_start_series, h5_append, h5_append_series
@@ -112,19 +113,19 @@ contains
     integer(c_int8_t), allocatable, target :: values(:)
     type(c_ptr) :: address
     integer(hid_t) :: dataset, data_type
-    integer(hsize_t) :: length
+    integer(hsize_t) :: length(1)
     integer(size_t) :: bytes
     integer :: ierr, ignored
 
-    call open_series(file, source, dataset, length, status)
+    call h5_dataset_open(file, source, dataset, length, status)
     if (status_failed(status)) return
     call h5dget_type_f(dataset, data_type, ierr)
     call h5tget_size_f(data_type, bytes, ierr)
-    allocate (values(bytes*length))
+    allocate (values(bytes*length(1)))
     address = c_loc(values)
     call h5dread_f(dataset, data_type, address, ierr)
     if (ierr /= 0) call h5_fail(file, source, 'could not be read', status)
-    call append_data(file, name, data_type, length, address, status)
+    call append_data(file, name, data_type, length(1), address, status)
     call h5tclose_f(data_type, ignored)
     call h5dclose_f(dataset, ignored)
   end subroutine h5_append_series
@@ -138,15 +139,15 @@ contains
     type(c_ptr), intent(in) :: address       !! of the new values
     type(status_t), intent(inout) :: status
     integer(hid_t) :: dataset, space, piece
-    integer(hsize_t) :: length
+    integer(hsize_t) :: length(1)
     integer :: ierr, ignored
 
-    call open_series(file, name, dataset, length, status)
+    call h5_dataset_open(file, name, dataset, length, status)
     if (status_failed(status)) return
-    call h5dset_extent_f(dataset, [length + n], ierr)
+    call h5dset_extent_f(dataset, length + n, ierr)
     if (ierr == 0) then
       call h5dget_space_f(dataset, space, ierr)
-      call h5sselect_hyperslab_f(space, h5s_select_set_f, [length], [n], ierr)
+      call h5sselect_hyperslab_f(space, h5s_select_set_f, length, [n], ierr)
       call h5screate_simple_f(1, [n], piece, ierr)
       call h5dwrite_f(dataset, data_type, address, ierr, piece, space)
       call h5sclose_f(piece, ignored)
@@ -155,29 +156,4 @@ contains
     if (ierr /= 0) call h5_fail(file, name, 'could not be appended to (disk full?)', status)
     call h5dclose_f(dataset, ignored)
   end subroutine append_data
-
-  !> Open a series and tell how many values it has.
-  subroutine open_series(file, name, dataset, length, status)
-    type(h5_file_t), intent(in) :: file
-    character(*), intent(in) :: name !! path of the dataset
-    integer(hid_t), intent(out) :: dataset
-    integer(hsize_t), intent(out) :: length
-    type(status_t), intent(inout) :: status
-    integer(hid_t) :: space
-    integer(hsize_t) :: dims(1), max_dims(1)
-    integer :: ierr, ignored
-
-    dataset = -1
-    length = 0
-    if (status_failed(status)) return
-    call h5dopen_f(file%here, name, dataset, ierr)
-    if (ierr /= 0) then
-      call h5_fail(file, name, 'not found, so no series to read or lengthen', status)
-      return
-    end if
-    call h5dget_space_f(dataset, space, ierr)
-    call h5sget_simple_extent_dims_f(space, dims, max_dims, ignored)
-    call h5sclose_f(space, ignored)
-    length = dims(1)
-  end subroutine open_series
 end module talus_h5_append

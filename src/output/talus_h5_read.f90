@@ -10,7 +10,7 @@ module talus_h5_read
   use talus_h5_file, only: h5_file_t, h5_fail
   implicit none
   private
-  public :: h5_read
+  public :: h5_read, h5_dataset_open
 
   !> Read a whole dataset: text; reals (n), (m,n); integers (n). Empty after a failure.
   interface h5_read
@@ -20,7 +20,7 @@ module talus_h5_read
 contains
 
   !> Open a dataset of the given rank.
-  subroutine dataset_open(file, name, dataset, dims, status)
+  subroutine h5_dataset_open(file, name, dataset, dims, status)
     type(h5_file_t), intent(in) :: file
     character(*), intent(in) :: name               !! path of the dataset
     integer(hid_t), intent(out) :: dataset
@@ -46,7 +46,7 @@ contains
       call h5sget_simple_extent_dims_f(space, dims, max_dims, ierr)
     end if
     call h5sclose_f(space, ignored)
-  end subroutine dataset_open
+  end subroutine h5_dataset_open
 
   !> Read into memory and close.
   subroutine dataset_read(file, name, dataset, data_type, address, status)
@@ -74,7 +74,7 @@ contains
     integer(hsize_t) :: dims(1)
     integer(hid_t) :: dataset
 
-    call dataset_open(file, name, dataset, dims, status)
+    call h5_dataset_open(file, name, dataset, dims, status)
     allocate (data(dims(1)))
     call dataset_read(file, name, dataset, h5t_native_double, c_loc(data), status)
   end subroutine read_real_1
@@ -87,7 +87,7 @@ contains
     integer(hsize_t) :: dims(2)
     integer(hid_t) :: dataset
 
-    call dataset_open(file, name, dataset, dims, status)
+    call h5_dataset_open(file, name, dataset, dims, status)
     allocate (data(dims(1), dims(2)))
     call dataset_read(file, name, dataset, h5t_native_double, c_loc(data), status)
   end subroutine read_real_2
@@ -100,7 +100,7 @@ contains
     integer(hsize_t) :: dims(1)
     integer(hid_t) :: dataset
 
-    call dataset_open(file, name, dataset, dims, status)
+    call h5_dataset_open(file, name, dataset, dims, status)
     allocate (data(dims(1)))
     call dataset_read(file, name, dataset, h5t_native_integer, c_loc(data), status)
   end subroutine read_integer_1
@@ -117,7 +117,7 @@ contains
     integer :: i, ierr
 
     text = ''
-    call dataset_open(file, name, dataset, none, status)
+    call h5_dataset_open(file, name, dataset, none, status)
     if (dataset < 0) return
     call h5dget_type_f(dataset, letter_type, ierr)
     call h5tget_size_f(letter_type, length, ierr)

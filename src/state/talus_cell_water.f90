@@ -58,10 +58,12 @@ contains
 
     last = first + n - 1
     if (allocated(state%give)) then
-      do i = first, last
-        call cell_invert(ground, soil, i, state)
-      end do
-      return
+      if (any(state%give(first:last) > 0.0_dp)) then
+        do i = first, last
+          call cell_invert(ground, soil, i, state)
+        end do
+        return
+      end if
     end if
     pore = state%jacobian(first:last) - 1.0_dp + ground%porosity(soil)
     call storage_invert(ground%curve(soil), ground%storage(soil), n, pore, &

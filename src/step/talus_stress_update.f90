@@ -18,7 +18,7 @@ module talus_stress_update
   use talus_elastic, only: elastic_energies
   use talus_damage, only: driver_none
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
-  use talus_storage, only: storage_invert
+  use talus_cell_water, only: cells_invert
   implicit none
   private
   public :: stress_update
@@ -216,7 +216,7 @@ contains
     real(dp), intent(in) :: f_new(soil_points,4)
     type(state_t), intent(inout) :: state
     real(dp), dimension(soil_points), intent(inout) :: suction_old, suction, saturation
-    real(dp) :: pore(n), over_range
+    real(dp) :: over_range
     integer :: last, j
 
     last = first + n - 1
@@ -224,13 +224,7 @@ contains
       state%jacobian(first+j-1) = f_new(j, 1)*f_new(j, 4) - f_new(j, 2)*f_new(j, 3)
       suction_old(j) = state%suction(first+j-1)
     end do
-    if (coupled) then
-      pore = state%jacobian(first:last) - 1.0_dp + ground%porosity(soil)
-      call storage_invert(ground%curve(soil), ground%storage(soil), n, pore, &
-        state%jacobian(first:last), state%content(first:last), state%pressure(first:last), &
-        state%saturation(first:last), state%ratio(first:last), state%potential(first:last), &
-        state%capacity(first:last))
-    end if
+    if (coupled) call cells_invert(ground, soil, first, n, state)
     over_range = 1.0_dp/(ground%curve(soil)%maximum - ground%curve(soil)%residual)
     suction(:n) = -state%pressure(first:last)
     saturation(:n) = (state%saturation(first:last) - ground%curve(soil)%residual)*over_range

@@ -8,7 +8,8 @@ module talus_bench
   use talus_text, only: text_of
   use talus_bench_model, only: parts_t, parts_one_level, parts_everything
   use talus_bench_triad, only: triad_t, triad_allocate, triad_entries
-  use talus_bench_measure, only: speed_t, price_t, measure_speed, measure_prices
+  use talus_bench_measure, only: speed_t, price_t, measure_speed, measure_prices, &
+    triads_agree
   use talus_bench_report, only: report_text, report_files, report_keys
   use omp_lib, only: omp_get_num_procs
   implicit none
@@ -56,6 +57,7 @@ contains
       if (status_failed(status)) return
     end do
     deallocate (triad%a, triad%b, triad%c)
+    call triads_agree(speed)
     call say('price list')
     call measure_prices(price_name, price_parts, nodes_quick, block_node_steps, price, status)
     if (status_failed(status)) return

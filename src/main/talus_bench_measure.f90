@@ -15,7 +15,7 @@ module talus_bench_measure
   use omp_lib, only: omp_set_num_threads, omp_get_max_threads
   implicit none
   private
-  public :: speed_t, price_t, measure_speed, measure_prices, median
+  public :: speed_t, price_t, measure_speed, measure_prices, triads_agree, median
 
   integer, parameter, public :: rounds = 5
   !> Fewest steps of a timed block.
@@ -102,6 +102,19 @@ contains
     end do
     if (held > 0_i8) speed%peak = memory_held('VmHWM:') - held
   end subroutine measure_speed
+
+  !> Give all models on as many threads one triad, the median of theirs: there is one memory, and
+  !> what else used it while one model was measured says nothing of that model.
+  pure subroutine triads_agree(speed)
+    type(speed_t), intent(inout) :: speed(:)
+    real(dp) :: own(size(speed))
+    integer :: i
+
+    own = speed%triad
+    do i = 1, size(speed)
+      speed(i)%triad = median(pack(own, speed%threads == speed(i)%threads))
+    end do
+  end subroutine triads_agree
 
   !> Prices of models, on one thread; the first is the unit.
   subroutine measure_prices(names, parts, nodes, block, price, status)

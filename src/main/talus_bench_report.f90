@@ -120,8 +120,8 @@ contains
       'of three spacings, Drucker-Prager, damage, '// &
       'pore water coupled to the soil, stabilised. Wall times are medians of '//text_of(rounds)// &
       nl// &
-      'rounds, in which all that is compared takes turns. Bytes are counted, not measured '// &
-      '(src/main/talus_bench_bytes.f90).'//nl
+      'rounds, in which all that is compared takes turns; the triad is the median of all models on '// &
+      'as many threads.'//nl//'Bytes are counted, not measured (src/main/talus_bench_bytes.f90).'//nl
   end function heading
 
   !> Million node-steps per second, whole and by phase.

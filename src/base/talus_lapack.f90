@@ -7,6 +7,7 @@ module talus_lapack
   public :: dsyev, dsygv, dgeev
 
   interface
+    !> Eigenvalues `w` of a symmetric matrix in rising order, with jobz = 'V' eigenvectors in `a`.
     subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
       import :: dp
       character, intent(in) :: jobz, uplo
@@ -16,6 +17,7 @@ module talus_lapack
       integer, intent(out) :: info
     end subroutine dsyev
 
+    !> The same of a x = w b x (itype 1), a symmetric and b symmetric positive definite.
     subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
       import :: dp
       character, intent(in) :: jobz, uplo
@@ -25,6 +27,7 @@ module talus_lapack
       integer, intent(out) :: info
     end subroutine dsygv
 
+    !> Eigenvalues wr + i wi of any real matrix, and left and right eigenvectors as asked for.
     subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
       import :: dp
       character, intent(in) :: jobvl, jobvr

@@ -34,11 +34,9 @@ contains
     open (newunit=unit, file=path, access='stream', form='unformatted', action='read', &
           status='old', iostat=iostat)
     if (iostat == 0) read (unit, iostat=iostat) text
-    if (iostat /= 0) then
-      problem = 'the file cannot be read; allowed: a readable text file'
-      return
-    end if
-    close (unit)
+    if (iostat /= 0) problem = 'the file cannot be read; allowed: a readable text file'
+    close (unit, iostat=iostat)
+    if (len(problem) > 0) return
     call normalise(text)
     if (is_binary(text)) then
       problem = 'the file is not text; allowed: '//what//' in plain text'

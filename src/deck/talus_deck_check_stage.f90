@@ -87,12 +87,18 @@ contains
       'a scaled mass is not that of the soil', messages, &
       '''lumped'' with mass_scaling, or mass_scaling = .false.')
     do i = 1, size(deck%boundary)
-      if (size(deck%boundary(i)%velocity_gradient) == 0) cycle
       if (.not. deck_acts_in(deck%boundary(i), stage%name)) cycle
-      call complain(store, section, 'mass', &
-        'the acceleration of nodes with a velocity_gradient does not reach their neighbours', &
-        messages, '''lumped'' where a velocity_gradient acts')
-      return
+      if (size(deck%boundary(i)%velocity_gradient) > 0) then
+        call complain(store, section, 'mass', &
+          'the acceleration of nodes with a velocity_gradient does not reach their neighbours', &
+          messages, '''lumped'' where a velocity_gradient acts')
+        return
+      else if (deck_given(deck%boundary(i)%floor)) then
+        call complain(store, section, 'mass', &
+          'a node that lands on a floor does not stop the mass that it shares', &
+          messages, '''lumped'' where soil comes down to a floor')
+        return
+      end if
     end do
   end subroutine check_mass
 

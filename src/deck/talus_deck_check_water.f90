@@ -43,11 +43,12 @@ contains
           call complain(store, at(i), 'saturation_residual', 'not below saturation_maximum', &
                         messages, 'saturation_residual < saturation_maximum')
         end if
-        if (water%retention == 'van_genuchten' .and. deck_exceeds(2.0_dp, water%n) .and. &
-            deck_exceeds(1.0e-6_dp, water%air_entry_cut)) then
-          call warn(store, at(i), 'air_entry_cut', &
-              'with n < 2 the conductivity falls infinitely '// &
-                    'fast at saturation; 0.01 to 0.02 m is usual', messages)
+        if (deck_exceeds(1.0e-4_dp, water%air_entry_cut)) then
+          if (water%retention == 'fredlund_xing') call complain(store, at(i), 'air_entry_cut', &
+            'this law measures the conductivity from there', messages, '0.0001 to 10')
+          if (water%retention == 'van_genuchten' .and. deck_exceeds(2.0_dp, water%n)) &
+            call complain(store, at(i), 'air_entry_cut', 'with n < 2 the conductivity falls '// &
+              'infinitely fast at saturation', messages, '0.0001 to 10; 0.01 to 0.02 is usual')
         end if
         if (deck_exceeds(water%conductivity_x, 0.1_dp)) then
           call warn(store, at(i), 'conductivity_x', 'very large; the unit is m/s', messages)

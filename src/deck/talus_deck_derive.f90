@@ -45,15 +45,19 @@ contains
     end if
   end subroutine derive_spacing
 
-  !> The 2 cm cut that keeps dk_r/ds bounded for 1 < n < 2 (src/THEORY.md section 3).
+  !> The 2 cm cut that keeps dk_r/ds bounded for 1 < n < 2, and from which Fredlund, Xing & Huang
+  !> measure k_r (src/THEORY.md section 3.6).
   subroutine derive_air_entry(store, section)
     type(store_t), intent(inout) :: store
     integer, intent(in) :: section
     real(dp) :: n
+    logical :: needed
 
     n = real_of(store, section, 'n')
-    call default_real(store, section, 'air_entry_cut', merge(0.02_dp, 0.0_dp, n > 0.0_dp .and. &
-        n < 2.0_dp))
+    needed = n > 0.0_dp .and. n < 2.0_dp
+    if (store%section(section)%value(store_value(store, section, 'retention'))%s == &
+      'fredlund_xing') needed = .true.
+    call default_real(store, section, 'air_entry_cut', merge(0.02_dp, 0.0_dp, needed))
   end subroutine derive_air_entry
 
   subroutine derive_stage(store, section, has_water)

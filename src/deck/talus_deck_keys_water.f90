@@ -29,28 +29,29 @@ contains
              'Degree of saturation that no suction removes.')
     call key(t, 'saturation_maximum', 'real', '', '1', '(0, 1]', &
              'Degree of saturation at zero suction.')
-    call key(t, 'alpha', 'real', '1/m', '*', '(0, 1e4]', &
+    call key(t, 'alpha', 'real', '1/m', '*', '[1e-4, 1e4]', &
              'alpha of van Genuchten or Gardner, or 1/lambda_c of Broadbridge and White, per '// &
              'metre of suction head.', 'retention=van_genuchten|gardner|broadbridge_white')
-    call key(t, 'n', 'real', '', '*', '(1, 20]', 'n of van Genuchten; m = 1 - 1/n.', vg)
-    call key(t, 'pore_connectivity', 'real', '', '0.5', '[-10, 10]', &
+    call key(t, 'n', 'real', '', '*', '[1.001, 20]', 'n of van Genuchten; m = 1 - 1/n.', vg)
+    call key(t, 'pore_connectivity', 'real', '', '0.5', '[-1, 10]', &
              'Exponent of the effective saturation in Mualem''s conductivity; with Brooks and '// &
              'Corey 1 gives Burdine''s.', 'retention=van_genuchten|brooks_corey')
-    call key(t, 'air_entry_cut', 'real', 'm', '~0.02 for n < 2, else 0', '[0, 10]', &
-             'Suction head below which the soil stays saturated.', vg)
-    call key(t, 'air_entry', 'real', 'm', '*', '(0, 1e4]', 'Air-entry suction head.', bc)
-    call key(t, 'lambda', 'real', '', '*', '(0, 20]', 'Pore-size index of Brooks and Corey.', bc)
+    call key(t, 'air_entry_cut', 'real', 'm', '~0.02 with fredlund_xing or n < 2, else 0', &
+             '[0, 10]', 'Suction head below which the soil stays saturated.', &
+             'retention=van_genuchten|fredlund_xing')
+    call key(t, 'air_entry', 'real', 'm', '*', '[1e-4, 1e3]', 'Air-entry suction head.', bc)
+    call key(t, 'lambda', 'real', '', '*', '[0.01, 20]', 'Pore-size index of Brooks and Corey.', bc)
     call key(t, 'c_parameter', 'real', '', '*', '[1.001, 1000]', &
              'C of Broadbridge and White, above 1: weak to strong nonlinearity as it falls to 1.', &
              'retention=broadbridge_white')
-    call key(t, 'fx_a', 'real', 'm', '*', '(0, 1e5]', 'a of Fredlund and Xing, as a head.', fx)
-    call key(t, 'fx_n', 'real', '', '*', '(0, 50]', 'n of Fredlund and Xing.', fx)
-    call key(t, 'fx_m', 'real', '', '*', '(0, 50]', 'm of Fredlund and Xing.', fx)
-    call key(t, 'fx_residual_suction', 'real', 'm', '*', '(0, 1e5]', &
+    call key(t, 'fx_a', 'real', 'm', '*', '[1e-4, 1e4]', 'a of Fredlund and Xing, as a head.', fx)
+    call key(t, 'fx_n', 'real', '', '*', '[0.1, 20]', 'n of Fredlund and Xing.', fx)
+    call key(t, 'fx_m', 'real', '', '*', '[0.05, 20]', 'm of Fredlund and Xing.', fx)
+    call key(t, 'fx_residual_suction', 'real', 'm', '*', '[1e-3, 1e5]', &
              'Residual suction head of Fredlund and Xing.', fx)
     call key(t, 'file', 'path', '', '*', '', &
              'CSV file of suction_Pa, saturation, relative_conductivity.', 'retention=table')
-    call key(t, 'relative_conductivity_minimum', 'real', '', '1e-12', '(0, 0.1]', &
+    call key(t, 'relative_conductivity_minimum', 'real', '', '1e-12', '[1e-20, 0.1]', &
              'Smallest relative conductivity.')
     call key(t, 'specific_storage', 'real', '1/Pa', '1e-9', '(0, 1e-3]', &
              'Water stored per volume of saturated soil and Pa, by compressibility.')

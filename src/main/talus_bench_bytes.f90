@@ -5,10 +5,10 @@
 !> and p ends of pairs of the stabilisation:
 !>
 !>   strain         n (48 + 52) + 20 m1, and 8 n to divide by the area without a second level
-!>   second level   n 68 + 12 m2
-!>   stress         n (216 + what the physics adds)
+!>   second level   n 76 + 8 m2
+!>   stress         n (220 + what the physics adds)
 !>   stabilisation  n (172) + 28 p, and 8 n to divide by the area without a second level
-!>   adjoint        n 68 + 12 m2, or 72 n to divide by the area where there is no stabilisation
+!>   adjoint        n 76 + 8 m2, or 72 n to divide by the area where there is no stabilisation
 !>   force          n (68 + 80) + 20 m1, and 16 n each with stabilisation and with damping
 !>   seepage        n 290 + 88 faces, an explicit sub-step; n 100 + 20 m1 more for oblique fluxes
 module talus_bench_bytes

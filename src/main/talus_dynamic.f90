@@ -39,8 +39,9 @@ contains
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
     real(dp) :: travelled, step_first
-    real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval, speed
+    real(dp) :: done, since_water, water_interval, next_line, next_snapshot, line_interval
     integer :: failed
+    logical :: over, due
 
     done = 0.0_dp
     step_first = session%motion%step
@@ -57,7 +58,8 @@ contains
     failed = 0
     if (session%conditions%driven) call soil_force(session%disc, session%ground, &
       session%motion%coupled, session%state, session%work, failed)
-    do while (done < stage%duration .and. .not. status_failed(status))
+    over = .false.
+    do while (.not. (over .or. status_failed(status)))
       call timer_start(session%timer, 'soil')
       call look_at_step(session, travelled)
       if (step_collapsed(session%motion%step, step_first, stage%duration)) then
@@ -73,7 +75,12 @@ contains
       done = done + session%motion%step
       since_water = since_water + session%motion%step
       session%state%time = session%state%time + session%motion%step
-      if (stage%solve == 'both' .and. since_water >= water_interval) then
+      over = done >= stage%duration
+      due = over .or. done >= min(next_line, next_snapshot)
+      if (due .and. .not. over) over = done > rest_share*stage%duration .and. &
+        sqrt(maxval(sum(session%state%v**2, dim=1))) < stage%rest_velocity
+      ! The water of the whole stage moves, also of the last part of an interval.
+      if (stage%solve == 'both' .and. (over .or. since_water >= water_interval)) then
         session%state%time = session%state%time - since_water
         call move_water(session, stage, since_water)
         session%state%time = session%state%time + since_water
@@ -81,16 +88,14 @@ contains
         since_water = 0.0_dp
         water_interval = water_pace(session, stage)
       end if
-      if (done < min(next_line, next_snapshot, stage%duration)) cycle
+      if (.not. due) cycle
       call put_off(next_line, done, line_interval)
       call record_line(session, done/stage%duration, status)
       session%last_good = session%state
-      speed = sqrt(maxval(sum(session%state%v**2, dim=1)))
-      if (done >= next_snapshot .and. done < stage%duration) then
+      if (done >= next_snapshot .and. .not. over) then
         call record_snapshot(session, status)
         call put_off(next_snapshot, done, snapshot_interval(session, stage))
       end if
-      if (speed < stage%rest_velocity .and. done > rest_share*stage%duration) exit
     end do
     call record_snapshot(session, status)
   end subroutine run_dynamic
@@ -136,14 +141,14 @@ contains
     type(session_t), intent(inout) :: session
     real(dp), intent(in) :: step_first !! step at the start of the stage [s]
     type(status_t), intent(inout) :: status
+    character(:), allocatable :: saved
 
     call timer_stop(session%timer, 'soil')
+    call record_last_good(session, saved)
     call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
       ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
       ': the stable step of the soil has fallen from '//text_of(step_first)//' to '// &
-      text_of(session%motion%step)//' s, too short for time to go on; last good state at '// &
-      text_of(session%last_good%time)//' s saved as snapshot last_good')
-    call record_last_good(session)
+      text_of(session%motion%step)//' s, too short for time to go on; '//saved)
   end subroutine report_collapse
 
   !> Find the stable step again where the soil has moved enough to change it.

@@ -74,9 +74,10 @@ contains
     real(dp), intent(in) :: ratio !! out-of-balance force over the load
     type(status_t), intent(inout) :: status
     real(dp), allocatable :: force(:), moved(:)
+    character(:), allocatable :: saved
 
     session%last_good = session%state
-    call record_last_good(session)
+    call record_last_good(session, saved)
     force = sum(merge(session%work%force, 0.0_dp, session%motion%mobility > 0.0_dp)**2, dim=1)
     moved = norm2(session%state%u - session%state%u_zero, dim=1)
     call status_set(status, status_numeric, 'stage '//stage%name//', time '// &
@@ -85,7 +86,7 @@ contains
       ' of the load, allowed '//text_of(stage%tolerance)//', largest at '// &
       node_text(session, maxloc(force, dim=1))//'; largest displacement '// &
       text_of(maxval(moved))//' m at '//node_text(session, maxloc(moved, dim=1))// &
-      '; the slope does not stand, or steps_max is too small; state saved as snapshot last_good')
+      '; the slope does not stand, or steps_max is too small; '//saved)
   end subroutine report_unbalanced
 
   !> Count displacement, strain and the history of the soil from here.

@@ -233,16 +233,20 @@ contains
     call timer_stop(session%timer, 'output')
   end subroutine record_named
 
-  !> Write the last good state, after the numbers failed. The status keeps the failure.
-  subroutine record_last_good(session)
+  !> Write the last good state, after the numbers failed.
+  subroutine record_last_good(session, saved)
     type(session_t), intent(inout) :: session
+    character(:), allocatable, intent(out) :: saved !! what became of it, for the message of failure
     type(state_t) :: state
     type(status_t) :: status
 
+    saved = 'no good state to save'
     if (.not. allocated(session%last_good%u)) return
     state = session%last_good
     call record_named(session, 'last_good', state, status)
     call write_restart(session, 'last_good', state, status)
+    saved = 'last good state at '//text_of(state%time)//' s saved as snapshot last_good'
+    if (status_failed(status)) saved = 'last good state not saved: '//status%message
   end subroutine record_last_good
 
   !> All active fields of a state.

@@ -55,7 +55,7 @@ module talus_session
     type(reduction_t), allocatable :: reduction(:) !! of each stage of strength reduction so far
     logical :: joint = .false.              !! water and soil of the stage agree in each step
     real(dp) :: coupling_error = -1.0_dp    !! greatest coupling_left of all storm steps; -1: none
-    real(dp) :: worst_water_error = 0.0_dp  !! over all storms
+    real(dp) :: worst_water_error = 0.0_dp  !! over all stages but geostatic
     real(dp) :: worst_energy_error = 0.0_dp !! over all dynamic stages
     real(dp) :: greatest_displacement = 0.0_dp !! since displacements were last reset [m]
     character(:), allocatable :: declared   !! scaled masses and damping of the stages

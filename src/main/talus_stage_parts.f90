@@ -92,17 +92,16 @@ contains
     integer, intent(in) :: failed !! code*n + node
     type(status_t), intent(inout) :: status
     integer :: node, code
-    character(:), allocatable :: what
+    character(:), allocatable :: what, saved
 
     code = (failed - 1)/session%disc%n
     node = failed - code*session%disc%n
+    call record_last_good(session, saved)
     what = 'the stress is not a finite number'
     if (code == soil_inverted) what = 'the soil is turned inside out (det F <= 0)'
     call status_set(status, status_numeric, 'stage '//session%deck%stage(session%stage)%name// &
       ', time '//text_of(session%state%time)//' s, step '//text_of(session%state%steps)// &
-      ', '//node_text(session, node)//': '//what//'; last good state at '// &
-      text_of(session%last_good%time)//' s saved as snapshot last_good')
-    call record_last_good(session)
+      ', '//node_text(session, node)//': '//what//'; '//saved)
   end subroutine report_broken
 
   !> A node by its number and where it was at the start.

@@ -6,11 +6,13 @@ module talus_storm
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
+  use talus_state, only: state_t
   use talus_session, only: session_t
   use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
   use talus_coupling, only: coupling_t, coupling_start, coupling_give, coupling_take, &
     coupling_left, coupling_done, coupling_turns
   use talus_soil_law, only: soil_inverted
+  use talus_soil_step, only: soil_force
   use talus_stage_parts, only: take_load, move_water, take_back, is_due, put_off, &
     snapshot_interval, report_broken
   use talus_record, only: record_line, record_snapshot
@@ -59,6 +61,7 @@ contains
         call take_back(session)
         if (stage%solve /= 'soil') call move_water(session, stage, step)
         session%state%time = session%last_good%time + step
+        call feel_supports(session)
         call progress_say(session%progress, 'equilibrium lost after '// &
           text_of(session%last_good%time/3600.0_dp)//' h')
       end if
@@ -75,6 +78,18 @@ contains
       if (session%lost .or. status_failed(status)) return
     end do
   end subroutine run_storm
+
+  !> The forces of the state as it is, for the reactions of the next line; those at hand are of the
+  !> trial that was taken back. The state is not touched.
+  subroutine feel_supports(session)
+    type(session_t), intent(inout) :: session
+    type(state_t) :: state
+    integer :: failed
+
+    if (.not. session%soil_moves) return
+    state = session%state
+    call soil_force(session%disc, session%ground, session%motion%coupled, state, session%work, failed)
+  end subroutine feel_supports
 
   !> One step of the storm clock. `stands` tells whether the soil is in equilibrium after it.
   subroutine storm_step(session, stage, step, stands, status)

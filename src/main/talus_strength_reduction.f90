@@ -2,7 +2,7 @@
 !> A stage of strength reduction (src/THEORY.md section 5.9; Griffiths & Lane 1999): the factor by
 !> which the strength can be divided until the soil finds no equilibrium.
 module talus_strength_reduction
-  use talus_kinds, only: dp, i8
+  use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
@@ -12,10 +12,11 @@ module talus_strength_reduction
   use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
   use talus_soil_law, only: soil_inverted
   use talus_record, only: record_line, record_snapshot, record_named
+  use talus_stage_parts, only: take_back
   use talus_progress, only: progress_say
   implicit none
   private
-  public :: strength_reduction, next_factor
+  public :: failure_displacement, strength_reduction, next_factor
 
   !> Ratio of two factors until one stands and one fails.
   real(dp), parameter :: stride = 1.25_dp
@@ -107,7 +108,7 @@ contains
     associate (disc => session%disc, law => session%ground%law)
       area = sum(disc%dual%area)
       width = maxval(disc%mesh%x(1, :)) - minval(disc%mesh%x(1, :))
-      weight = sum(abs(session%state%load(2, :)))/area
+      weight = session%ground%gravity*sum(session%state%mass)/area
       compliance = sum(disc%dual%area/law(disc%soil)%elastic%youngs_modulus)/area
       displacement = failure_share*weight*compliance*(area/width)**2
     end associate
@@ -148,16 +149,6 @@ contains
     left = log(max(1.0_dp, left/stage%factor_tolerance))/log(2.0_dp)
     fraction = real(found%trials, dp)/(real(found%trials, dp) + left)
   end function progress_of
-
-  !> Return to the state at the start; the steps are counted all the same.
-  subroutine take_back(session)
-    type(session_t), intent(inout) :: session
-    integer(i8) :: steps
-
-    steps = session%state%steps
-    session%state = session%last_good
-    session%state%steps = steps
-  end subroutine take_back
 
   !> Snapshot of the mechanism of each such stage: mechanism, mechanism_2, ...
   pure function mechanism_name(number) result(name)

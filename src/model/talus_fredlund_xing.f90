@@ -4,9 +4,12 @@
 !! S(s) = C(s) / log(e + (s/a)^n)^m, with C = 1 - log(1 + s/s_r)/log(1 + s_end/s_r), which is
 !! zero at s_end = 1e9 Pa. The conductivity is N(s)/N(s_entry) with, y = log s,
 !!
-!!     N(s) = integral over y from log s to log s_end of (S(y) - S(s)) S'(y) exp(-y) dy .
+!!     N(s) = integral of (S(s') - S(s))/s'^2 dS from s to s_end
+!!          = integral over y of (S(y) - S(s)) dS/dy exp(-2 y) dy :
 !!
-!! On a grid of y, B(y) = integral of S' exp(-y) to the end. From node j+1 to any y below it
+!! theirs has (S(y) - S(s)) exp(-y) S'(e^y), with S' the slope by suction. N grows without bound
+!! as s falls to 0, by log s, since C is linear there: the law needs an air entry.
+!! On a grid of y, B(y) = integral of dS/dy exp(-2 y) to the end. From node j+1 to any y below it
 !! N(y) = N(j+1) + [integral over y..y(j+1)] + (S(j+1) - S(y)) B(j+1), a sum of positive terms.
 module talus_fredlund_xing
   use talus_kinds, only: dp
@@ -90,7 +93,7 @@ contains
     value = fx%nn(j) + part_n + (saturation_at(fx, top) - saturation_at(fx, y))*fx%b(j)
   end function fredlund_xing_integral
 
-  !> Integrals over y from `low` to `high` of S' exp(-y) and of (S - S(low)) S' exp(-y),
+  !> Integrals over y from `low` to `high` of dS/dy exp(-2 y) and of (S - S(low)) times that,
   !! by eight Gauss points.
   pure subroutine integrate(fx, low, high, part_b, part_n)
     type(fredlund_xing_t), intent(in) :: fx
@@ -107,7 +110,7 @@ contains
     do i = 1, 4
       do side = -1, 1, 2
         y = centre + real(side, dp)*gauss_x(i)*half
-        weight = gauss_w(i)*half*slope_at(fx, y)*exp(-y)
+        weight = gauss_w(i)*half*slope_at(fx, y)*exp(-2.0_dp*y)
         part_b = part_b + weight
         part_n = part_n + weight*(saturation_at(fx, y) - s_low)
       end do

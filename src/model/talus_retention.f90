@@ -32,7 +32,8 @@ module talus_retention
     law_fredlund_xing = 4, law_table = 5, law_broadbridge_white = 6
   !> Greatest suction of every law [Pa]: oven-dry soil (Fredlund & Xing 1994).
   real(dp), parameter, public :: suction_greatest = 1.0e9_dp
-  real(dp), parameter :: entry_automatic = 0.02_dp
+  !> Air-entry head where a law needs one, and the least [m].
+  real(dp), parameter :: entry_automatic = 0.02_dp, entry_least = 1.0e-4_dp
 
   !> Parameters of a retention law, as a deck gives them.
   type :: retention_t
@@ -147,7 +148,7 @@ contains
     if (status_failed(status)) return
     law%m = 1.0_dp - 1.0_dp/law%n
     cut = entry_head(retention, law%n < 2.0_dp)
-    if (law%n < 2.0_dp) call require_range('air_entry_cut', cut, 1.0e-4_dp, 10.0_dp, &
+    if (law%n < 2.0_dp) call require_range('air_entry_cut', cut, entry_least, 10.0_dp, &
       'm where n < 2 (dk_r/ds is unbounded at saturation otherwise)', status)
     law%entry = cut*retention%unit_weight
   end subroutine prepare_van_genuchten
@@ -177,9 +178,9 @@ contains
     call require_range('fx_residual_suction', retention%fx_residual_suction, 1.0e-3_dp, &
       1.0e5_dp, 'm', status)
     if (status_failed(status)) return
-    cut = entry_head(retention, retention%fx_n <= 1.0_dp)
-    if (retention%fx_n <= 1.0_dp) call require_range('air_entry_cut', cut, 1.0e-4_dp, 10.0_dp, &
-      'm where fx_n <= 1 (dk_r/ds is unbounded at saturation otherwise)', status)
+    cut = entry_head(retention, .true.)
+    call require_range('air_entry_cut', cut, entry_least, 10.0_dp, &
+      'm with fredlund_xing (k_r is measured from there)', status)
     law%entry = cut*retention%unit_weight
     law%scale = retention%fx_a*retention%unit_weight
     call fredlund_xing_make(law%scale, retention%fx_n, retention%fx_m, &

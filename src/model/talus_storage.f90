@@ -101,7 +101,7 @@ contains
   end subroutine invert_all
 
   !> The same where the pores widen with the pressure too: w = storage_content + give (p - anchor)
-  !> (src/THEORY.md (5.4a)), by Newton's method between brackets. `pressure` is the first guess.
+  !> (src/THEORY.md (5.4b)), by Newton's method between brackets. `pressure` is the first guess.
   pure subroutine storage_invert_giving(curve, storage, pore, jacobian, give, anchor, content, &
     pressure, saturation, ratio, potential, capacity)
     type(water_curve_t), intent(in) :: curve

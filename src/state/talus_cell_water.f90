@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Water and pressure of one cell: by the storage of the pores as they are, or with what they give
-!> as the soil follows the pressure (src/THEORY.md (2.3), (5.4a)).
+!> as the soil follows the pressure (src/THEORY.md (2.3), (5.4b)).
 module talus_cell_water
   use talus_kinds, only: dp
   use talus_ground, only: ground_t

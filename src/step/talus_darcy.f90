@@ -26,6 +26,8 @@ module talus_darcy
     real(dp), allocatable :: height(:)     !! present elevation [m], (n)
     real(dp), allocatable :: catch(:)      !! length of each inlet [m]
     real(dp), allocatable :: q(:)          !! flux through each face, first to second [m2/s]
+    real(dp), allocatable :: q_before(:)   !! the same before the sub-step [m2/s]
+    real(dp), allocatable :: content_before(:) !! water content then [m3/m2], (n)
     real(dp), allocatable :: peclet(:)     !! of each face
     real(dp), allocatable :: head(:,:)     !! total head [m], (2,n); second row unused zeros
     real(dp), allocatable :: slope(:,:)    !! area times gradient of head [m2], (4,n)

@@ -26,10 +26,9 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: time, step !! of the sub-step [s]
     type(state_t), intent(inout) :: state
-    real(dp), allocatable :: depth(:)
+    real(dp) :: depth(size(inlets%rains))
     integer :: i, k
 
-    allocate (depth(size(inlets%rains)))
     do i = 1, size(depth)
       depth(i) = rain_total(inlets%rains(i), time, time + step)
     end do

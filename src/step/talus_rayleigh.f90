@@ -52,7 +52,9 @@ contains
 
     do i = 1, size(d, 2)
       do j = 1, size(d, 1)
-        d(j, i) = real(modulo(i*(7919 + 104729*j), 1009), dp)/1009.0_dp - 0.5_dp
+        ! The product of the remainders, which stays small with any number of nodes.
+        d(j, i) = real(modulo(modulo(i, 1009)*modulo(7919 + 104729*j, 1009), 1009), dp)/1009.0_dp &
+          - 0.5_dp
       end do
     end do
     where (mobility <= 0.0_dp) d = 0.0_dp
@@ -122,11 +124,11 @@ contains
     !$omp end parallel do
   end subroutine blend
 
-  !> Residual K d - quotient M d of a direction [N/m].
+  !> Residual K d - quotient M d of a direction: of displacements [N/m], of pressures [m2/s].
   subroutine direction_residual(direction, quotient, residual)
     type(direction_t), intent(in) :: direction
-    real(dp), intent(in) :: quotient                     !! of Rayleigh [1/s2]
-    real(dp), contiguous, intent(inout) :: residual(:,:) !! (2,n)
+    real(dp), intent(in) :: quotient                     !! of Rayleigh: [1/s2], or [1/s]
+    real(dp), contiguous, intent(inout) :: residual(:,:) !! (2,n), or (1,n)
     integer :: i
 
     !$omp parallel do default(none) shared(direction, quotient, residual) private(i) &

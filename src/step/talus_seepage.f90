@@ -131,26 +131,25 @@ contains
     type(state_t), intent(inout) :: state
     real(dp), intent(inout) :: step !! in: longest; out: taken [s]
     type(water_balance_t) :: water
-    real(dp), allocatable :: content(:), q(:)
     real(dp) :: moved
     integer :: cuts
 
-    content = state%content
-    q = seepage%q
+    seepage%content_before = state%content
+    seepage%q_before = seepage%q
     water = state%water
     do cuts = 0, most_cuts
       call take_step(seepage, disc, ground, inlets, time, step, state)
       call face_fluxes(seepage, disc, ground, state)
-      moved = maxval(abs(state%content - content))
+      moved = maxval(abs(state%content - seepage%content_before))
       ! Steps that are asked to be too long are not taken back: to see what they do is the point.
       if (seepage%explicit_only .and. seepage%safety > 1.0_dp) exit
       if (step <= excess*seepage_step_limit(seepage, disc, ground, state) .and. &
           moved <= 2.0_dp*content_change) exit
       if (cuts == most_cuts) exit
       step = step/cut
-      state%content = content
+      state%content = seepage%content_before
       state%water = water
-      seepage%q = q
+      seepage%q = seepage%q_before
     end do
     seepage%stride = step*content_change/max(moved, 1.0e-12_dp)
     seepage%last = step

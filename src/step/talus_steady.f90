@@ -34,8 +34,8 @@ module talus_steady
 
 contains
 
-  !> From the pressures of `state`, a first guess, to those of steady flow. Content and flow
-  !> properties follow; rains count with their intensity at time 0.
+  !> From the pressures of `state`, a first guess, to those of steady flow. Its content is that of a
+  !> step on the way and is to be set by the caller; rains count with their intensity at time 0.
   subroutine steady_solve(seepage, disc, ground, inlets, state, status)
     type(seepage_t), intent(inout) :: seepage !! on return with the steady fluxes
     type(disc_t), intent(in) :: disc

@@ -16,7 +16,7 @@ module talus_stress_update
     soil_ok, history_eqps, history_damage, history_size, &
     stress_bishop, stress_net
   use talus_elastic, only: elastic_energies
-  use talus_damage, only: driver_none
+  use talus_damage, only: driver_none, damage_parts
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_cell_water, only: cells_invert
   implicit none
@@ -81,7 +81,7 @@ contains
     integer, intent(inout) :: failed
     real(dp), dimension(soil_points,4) :: f_old, f_new, strain, before, effective, stress
     real(dp), dimension(soil_points) :: suction_old, suction, saturation, det_mid, det_old, &
-      det_new, energy, energy_new, worn, excess, left, reduced
+      det_new, energy, energy_new, worn, excess, left, reduced, trace_old
     integer :: list(soil_points), last, listed, j
 
     last = first + n - 1
@@ -105,6 +105,8 @@ contains
       call elastic_energies(law%elastic, n, before, energy)
       call soil_trial(law, n, f_old, f_new, suction_old, suction, before, strain, effective, &
                       det_mid, det_old, det_new)
+      if (law%swelling%kind /= suction_strain_none) call damaged_traces(law, first, n, before, &
+        state, trace_old)
       call soil_excess(law, n, suction, saturation, effective, excess)
       stress(:n, :) = effective(:n, :)
       left(:n) = 1.0_dp
@@ -125,7 +127,7 @@ contains
       end if
     end associate
     if (ground%wet) call water_work_block(ground, soil, first, n, suction_old, suction, &
-      saturation, det_old, det_new, effective, state, stress)
+      saturation, det_old, det_new, trace_old, state, stress)
     ! A rate law for Cauchy stress works J sigma:D, which is the change of J times the stored energy
     ! less this.
     do j = 1, n
@@ -232,17 +234,33 @@ contains
     state%suction(first:first+n-1) = suction(:n)
   end subroutine water_block
 
+  !> Trace of the damaged stress of a block before the step [Pa]; turning does not change it.
+  pure subroutine damaged_traces(law, first, n, before, state, trace)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: first, n
+    real(dp), intent(in) :: before(soil_points,4) !! undamaged stress before [Pa]
+    type(state_t), intent(in) :: state            !! with the damage before
+    real(dp), intent(inout) :: trace(soil_points)
+    real(dp) :: part(soil_points,4)
+
+    trace(:n) = before(:n, 1) + before(:n, 2) + before(:n, 3)
+    if (law%damage%driver == driver_none) return
+    call damage_parts(law%damage%split, n, before, part)
+    trace(:n) = trace(:n) - state%history(history_damage, first:first+n-1) &
+      *(part(:n, 1) + part(:n, 2) + part(:n, 3))
+  end subroutine damaged_traces
+
   !> Work that a block exchanges with its water, and its total stress.
   pure subroutine water_work_block(ground, soil, first, n, suction_old, suction, saturation, &
-    det_old, det_new, effective, state, stress)
+    det_old, det_new, trace_old, state, stress)
     type(ground_t), intent(in) :: ground
     integer, intent(in) :: soil, first, n
     real(dp), dimension(soil_points), intent(in) :: suction_old, suction !! [Pa]
     real(dp), intent(in) :: saturation(soil_points)                      !! effective [-]
     real(dp), dimension(soil_points), intent(in) :: det_old, det_new     !! J before and after [-]
-    real(dp), intent(in) :: effective(soil_points,4)  !! undamaged stress after [Pa]
-    type(state_t), intent(inout) :: state             !! with the stress before
-    real(dp), intent(inout) :: stress(soil_points,4)  !! effective in, total out [Pa]
+    real(dp), intent(in) :: trace_old(soil_points)    !! of damaged_traces; set with swelling only
+    type(state_t), intent(inout) :: state
+    real(dp), intent(inout) :: stress(soil_points,4)  !! damaged in, total out [Pa]
     real(dp) :: part, pull
     integer :: i, j
 
@@ -261,8 +279,8 @@ contains
       else if (law%swelling%kind /= suction_strain_none) then
         do j = 1, n
           i = first + j - 1
-          state%water_work(i) = state%water_work(i) + 0.5_dp*(sum(state%stress(1:3, i)) &
-            + (effective(j, 1) + effective(j, 2) + effective(j, 3)))*det_new(j) &
+          state%water_work(i) = state%water_work(i) + 0.25_dp*(det_old(j) + det_new(j)) &
+            *(trace_old(j) + (stress(j, 1) + stress(j, 2) + stress(j, 3))) &
             *suction_strain_increment(law%swelling, suction_old(j), suction(j), det_new(j))
         end do
       end if

@@ -6,28 +6,11 @@ module talus_sum
   use talus_kinds, only: dp
   implicit none
   private
-  public :: sum_blocks, sum_products, sum_apart, sum_add
+  public :: sum_products, sum_apart, sum_add
 
   integer, parameter :: block_length = 1024, lanes = 16
 
 contains
-
-  !> Sum of n values.
-  real(dp) function sum_blocks(n, a) result(total)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: a(n) !! any array of n elements
-    real(dp), allocatable :: part(:)
-    integer :: b, first
-
-    allocate (part((n + block_length - 1)/block_length))
-    !$omp parallel do default(none) shared(n, a, part) private(b, first) schedule(static)
-    do b = 1, size(part)
-      first = (b - 1)*block_length + 1
-      part(b) = sum_apart(min(block_length, n - first + 1), a(first))
-    end do
-    !$omp end parallel do
-    total = sum(part)
-  end function sum_blocks
 
   !> Sum of the products of two arrays of n elements.
   real(dp) function sum_products(n, a, b) result(total)

@@ -5,7 +5,7 @@ module talus_deck_check_soil
   use talus_const, only: deg
   use talus_text, only: text_of
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, soil_t, damage_t, deck_given, deck_exceeds, deck_soil_index, &
+  use talus_deck_types, only: deck_t, soil_t, deck_given, deck_exceeds, deck_soil_index, &
     deck_water_index, deck_damage_index
   use talus_deck_store, only: store_t, store_sections, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of, extent_holds

@@ -6,7 +6,7 @@ module talus_deck_csv
   use talus_table_csv, only: table_csv_t, table_csv_read, table_csv_fault
   implicit none
   private
-  public :: hydrograph_read, hydrograph_check, retention_read, retention_check
+  public :: hydrograph_read, retention_read, retention_check
 
   real(dp), parameter :: intensity_greatest = 1.0e4_dp ! mm/h; ten times the record
   real(dp), parameter :: conductivity_least = 1.0e-20_dp ! log k_r is interpolated

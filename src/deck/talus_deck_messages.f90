@@ -6,7 +6,7 @@ module talus_deck_messages
   implicit none
   private
   public :: message_t, messages_t, messages_start, messages_error, messages_warning
-  public :: messages_errors, messages_warnings, messages_line, messages_text, messages_sort
+  public :: messages_errors, messages_line, messages_text, messages_sort
   public :: messages_lines, messages_status
 
   type :: message_t
@@ -105,13 +105,6 @@ contains
     n = 0
     if (messages%count > 0) n = count(messages%item(:messages%count)%is_error)
   end function messages_errors
-
-  !> Number of warnings.
-  pure integer function messages_warnings(messages) result(n)
-    type(messages_t), intent(in) :: messages
-
-    n = messages%count - messages_errors(messages)
-  end function messages_warnings
 
   !> One message as printed: `file:line: error: ...`.
   pure function messages_line(messages, i) result(text)

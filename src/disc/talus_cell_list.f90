@@ -8,7 +8,7 @@ module talus_cell_list
   use talus_text, only: text_of
   implicit none
   private
-  public :: cell_list_t, cell_list_build, cell_list_within, cell_list_supports
+  public :: cell_list_t, cell_list_build, cell_list_supports
 
   type :: cell_list_t
     private
@@ -68,20 +68,6 @@ contains
     end do
   end subroutine cell_list_build
 
-  !> Points nearer than r to a position, whatever their own radii, in ascending order.
-  pure subroutine cell_list_within(list, position, r, found)
-    type(cell_list_t), intent(in) :: list
-    real(dp), intent(in) :: position(2)            !! [m]
-    real(dp), intent(in) :: r                      !! [m]
-    integer, allocatable, intent(out) :: found(:)
-    integer :: n, none(0)
-
-    call scan_circle(list, position, r, none, n)
-    allocate (found(n))
-    call scan_circle(list, position, r, found, n)
-    call sort_ascending(found)
-  end subroutine cell_list_within
-
   !> For each query, the points whose support covers it: |query - x| < radius of the point.
   subroutine cell_list_supports(list, query, offset, point, status)
     type(cell_list_t), intent(in) :: list
@@ -119,27 +105,6 @@ contains
     !$omp end parallel do
   end subroutine cell_list_supports
 
-  !> Count the points nearer than r, and store as many as `found` has room for.
-  pure subroutine scan_circle(list, position, r, found, n)
-    type(cell_list_t), intent(in) :: list
-    real(dp), intent(in) :: position(2), r
-    integer, intent(inout) :: found(:)
-    integer, intent(out) :: n
-    integer :: first(2), last(2), j, p
-
-    n = 0
-    call bin_range(list, position, r, first, last)
-    do j = first(2), last(2)
-      if (first(1) > last(1)) exit
-      do p = list%offset(1+first(1)+j*list%n_bin(1)), list%offset(2+last(1)+j*list%n_bin(1)) - 1
-        if (sum((list%x(:, p) - position)**2) < r**2) then
-          n = n + 1
-          if (n <= size(found)) found(n) = list%point(p)
-        end if
-      end do
-    end do
-  end subroutine scan_circle
-
   !> Count the points whose support covers a position, and store as many as there is room for.
   pure subroutine scan_supports(list, position, found, n)
     type(cell_list_t), intent(in) :: list
@@ -150,7 +115,7 @@ contains
     integer :: first(2), last(2), i, j, p, bin
 
     n = 0
-    call bin_range(list, position, list%reach, first, last)
+    call bin_range(list, position, first, last)
     do j = first(2), last(2)
       do i = first(1), last(1)
         bin = 1 + i + j*list%n_bin(1)
@@ -167,14 +132,14 @@ contains
     end do
   end subroutine scan_supports
 
-  !> Bins that a circle can reach, counted from 0; none when it misses them all.
-  pure subroutine bin_range(list, position, r, first, last)
+  !> Bins within reach of a position, counted from 0; none when it is far from them all.
+  pure subroutine bin_range(list, position, first, last)
     type(cell_list_t), intent(in) :: list
-    real(dp), intent(in) :: position(2), r
+    real(dp), intent(in) :: position(2)
     integer, intent(out) :: first(2), last(2)
     real(dp) :: high(2), margin
 
-    margin = r + 1.0e-9_dp*list%side
+    margin = list%reach + 1.0e-9_dp*list%side
     high = real(list%n_bin - 1, dp)
     first = int(min(max((position - margin - list%low)/list%side, 0.0_dp), high + 1.0_dp))
     last = floor(max(min((position + margin - list%low)/list%side, high), -1.0_dp))

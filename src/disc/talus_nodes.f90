@@ -7,7 +7,7 @@ module talus_nodes
   use talus_text, only: text_of
   implicit none
   private
-  public :: mesh_t, mesh_edges, mesh_find_boundary, mesh_tag_sides, mesh_area, mesh_bandwidth
+  public :: mesh_t, mesh_edges, mesh_find_boundary, mesh_tag_sides, mesh_bandwidth
   public :: mesh_corner_jacobian, mesh_next_corner, mesh_trim_elements
 
   !> Where a boundary edge lies.
@@ -159,20 +159,6 @@ contains
       end if
     end do
   end subroutine mesh_tag_sides
-
-  !> Area inside the boundary [m2], by the boundary edges alone.
-  pure real(dp) function mesh_area(mesh) result(area)
-    type(mesh_t), intent(in) :: mesh
-    real(dp) :: a(2), b(2)
-    integer :: i
-
-    area = 0.0_dp
-    do i = 1, size(mesh%boundary_edge, 2)
-      a = mesh%x(:, mesh%boundary_edge(1, i)) - mesh%x(:, 1)
-      b = mesh%x(:, mesh%boundary_edge(2, i)) - mesh%x(:, 1)
-      area = area + 0.5_dp*(a(1)*b(2) - a(2)*b(1))
-    end do
-  end function mesh_area
 
   !> Smallest corner Jacobian of an element [m2]: twice the area of the triangle that a corner
   !> spans with its two neighbours. Positive in every valid element.

@@ -3,7 +3,6 @@
 !> what each part of the physics costs.
 module talus_bench
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_bench_model, only: parts_t, parts_one_level, parts_everything

@@ -6,7 +6,7 @@ module talus_bench_measure
   use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
   use talus_session, only: session_t
-  use talus_timer, only: timer_t, timer_start, timer_stop
+  use talus_timer, only: timer_t
   use talus_cost, only: cost_t, cost_of
   use talus_bench_model, only: parts_t, bench_prepare
   use talus_bench_bytes, only: phases, phase_seepage, phase_bytes

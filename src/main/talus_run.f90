@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A run from deck to results: model, discretisation, state, stages, summary.
 module talus_run
-  use talus_kinds, only: dp, i8
+  use talus_kinds, only: dp
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_text, only: text_of
   use talus_deck_types, only: deck_t, deck_given, deck_moves_soil, deck_keeps_soil

@@ -3,7 +3,7 @@
 module talus_setup_ground
   use talus_kinds, only: dp
   use talus_const, only: deg
-  use talus_status, only: status_t, status_set, status_failed
+  use talus_status, only: status_t, status_failed
   use talus_deck_types, only: deck_t, soil_t, damage_deck_t => damage_t, water_t, deck_given, &
     deck_damage_index, deck_water_index
   use talus_ground, only: ground_t

@@ -9,11 +9,11 @@ module talus_damage
   use talus_status, only: status_t, status_set, status_deck
   use talus_text, only: text_of
   use talus_points, only: soil_points
-  use talus_elastic, only: elastic_t, elastic_bilinear, elastic_bilinears
+  use talus_elastic, only: elastic_t, elastic_bilinears
   implicit none
   private
   public :: damage_t, damage_prepare, damage_driver, damage_law, damage_advance
-  public :: damage_part, damage_parts, damage_degrade, damage_stored, damage_energies
+  public :: damage_part, damage_parts, damage_degrade, damage_energies
 
   integer, parameter, public :: driver_none = 0, driver_energy = 1, driver_mazars = 2, &
     driver_von_mises = 3, driver_plastic_strain = 4
@@ -238,20 +238,7 @@ contains
     released(:n) = 0.5_dp*(d_new(:n)*released(:n) - d_old(:n)*across(:n))
   end subroutine damage_degrade
 
-  !> Energy stored at a damaged point, 1/2 (s - D P(s)) : C^-1 : s [J/m3].
-  pure real(dp) function damage_stored(damage, elastic, stress, d)
-    type(damage_t), intent(in) :: damage
-    type(elastic_t), intent(in) :: elastic
-    real(dp), intent(in) :: stress(4) !! undamaged stress s [Pa]
-    real(dp), intent(in) :: d         !! damage [-]
-    real(dp) :: part(4)
-
-    call damage_part(damage%split, stress, part)
-    part = stress - d*part
-    damage_stored = 0.5_dp*elastic_bilinear(elastic, part, stress)
-  end function damage_stored
-
-  !> The same at n points of a block.
+  !> Energies stored at n damaged points of a block, 1/2 (s - D P(s)) : C^-1 : s.
   pure subroutine damage_energies(damage, elastic, n, stress, d, energy)
     type(damage_t), intent(in) :: damage
     type(elastic_t), intent(in) :: elastic

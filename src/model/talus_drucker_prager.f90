@@ -10,8 +10,8 @@ module talus_drucker_prager
   use talus_points, only: soil_points
   implicit none
   private
-  public :: cone_t, cones_t, cone_shape, cone_set, cones_set, drucker_prager_return
-  public :: drucker_prager_returns, drucker_prager_excess, secant_shear_ratios
+  public :: cone_t, cones_t, cone_shape, cones_set, drucker_prager_returns, drucker_prager_excess
+  public :: secant_shear_ratios
 
   !> Fits of the cone to the Mohr-Coulomb pyramid.
   integer, parameter, public :: fit_plane_strain = 1, fit_compression = 2, fit_extension = 3
@@ -66,18 +66,7 @@ contains
     end select
   end subroutine cone_shape
 
-  !> Complete a cone whose slopes are known with its k and the limit of I1.
-  pure subroutine cone_set(cone, k, tension_cutoff)
-    type(cone_t), intent(inout) :: cone
-    real(dp), intent(in) :: k              !! sqrt(J2) at I1 = 0 [Pa], >= 0
-    real(dp), intent(in) :: tension_cutoff !! largest mean stress [Pa]; negative = none
-
-    cone%k = k
-    cone%i1_max = k/max(cone%alpha, nearly_flat)
-    if (tension_cutoff >= 0.0_dp) cone%i1_max = min(cone%i1_max, 3.0_dp*tension_cutoff)
-  end subroutine cone_set
-
-  !> The same for a block, whose slopes and k are known.
+  !> Complete the cones of a block, whose slopes and k are known, with the limit of I1.
   pure subroutine cones_set(n, tension_cutoff, cones)
     integer, intent(in) :: n
     real(dp), intent(in) :: tension_cutoff !! largest mean stress [Pa]; negative = none
@@ -91,30 +80,6 @@ contains
       cones%i1_max(i) = min(cones%k(i)/max(cones%alpha(i), nearly_flat), most)
     end do
   end subroutine cones_set
-
-  !> Return a trial stress to the cone.
-  pure subroutine drucker_prager_return(cone, shear, bulk, stress, deqps, yielded)
-    type(cone_t), intent(in) :: cone
-    real(dp), intent(in) :: shear        !! G [Pa]
-    real(dp), intent(in) :: bulk         !! K [Pa]
-    real(dp), intent(inout) :: stress(4) !! trial stress in, returned stress out [Pa], tension +
-    real(dp), intent(out) :: deqps       !! increment of sqrt(2/3 e_p:e_p) [-], >= 0
-    logical, intent(out) :: yielded      !! true when the trial stress was outside
-    type(cones_t) :: cones
-    real(dp) :: block(soil_points,4)
-    real(dp), dimension(soil_points) :: added, excess, root
-
-    cones%alpha(1) = cone%alpha
-    cones%alpha_psi(1) = cone%alpha_psi
-    cones%k(1) = cone%k
-    cones%i1_max(1) = cone%i1_max
-    block(1, :) = stress
-    call drucker_prager_excess(1, cones, block, excess)
-    call drucker_prager_returns(1, cones, shear, bulk, block, added, root)
-    stress = block(1, :)
-    deqps = added(1)
-    yielded = excess(1) > 0.0_dp
-  end subroutine drucker_prager_return
 
   !> Return n trial stresses to their cones.
   !!

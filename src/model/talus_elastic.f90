@@ -8,9 +8,8 @@ module talus_elastic
   use talus_objective, only: piola_stress
   implicit none
   private
-  public :: elastic_t, elastic_prepare, elastic_add, elastic_adds, elastic_energy, elastic_energies
-  public :: elastic_bilinear, elastic_bilinears
-  public :: elastic_piola_tangent
+  public :: elastic_t, elastic_prepare, elastic_add, elastic_adds, elastic_energies
+  public :: elastic_bilinears, elastic_piola_tangent
 
   type :: elastic_t
     real(dp) :: youngs_modulus = 0.0_dp !! [Pa]
@@ -79,30 +78,7 @@ contains
     end do
   end subroutine elastic_adds
 
-  !> Elastic energy density a : C^-1 : b of two stresses, without the half.
-  pure real(dp) function elastic_bilinear(elastic, a, b)
-    type(elastic_t), intent(in) :: elastic
-    real(dp), intent(in) :: a(4) !! stress [Pa]
-    real(dp), intent(in) :: b(4) !! stress [Pa]
-    real(dp), parameter :: third = 1.0_dp/3.0_dp
-    real(dp) :: mean_a, mean_b, deviatoric
-
-    mean_a = (a(1) + a(2) + a(3))*third
-    mean_b = (b(1) + b(2) + b(3))*third
-    deviatoric = (a(1) - mean_a)*(b(1) - mean_b) + (a(2) - mean_a)*(b(2) - mean_b) &
-      + (a(3) - mean_a)*(b(3) - mean_b) + 2.0_dp*a(4)*b(4)
-    elastic_bilinear = mean_a*mean_b*elastic%over_bulk + deviatoric*elastic%over_shear
-  end function elastic_bilinear
-
-  !> Stored elastic energy density 1/2 stress : C^-1 : stress [J/m3].
-  pure real(dp) function elastic_energy(elastic, stress)
-    type(elastic_t), intent(in) :: elastic
-    real(dp), intent(in) :: stress(4) !! stress [Pa]
-
-    elastic_energy = 0.5_dp*elastic_bilinear(elastic, stress, stress)
-  end function elastic_energy
-
-  !> The same at n points of a block.
+  !> Stored elastic energy density 1/2 stress : C^-1 : stress at n points of a block.
   pure subroutine elastic_energies(elastic, n, stress, energy)
     type(elastic_t), intent(in) :: elastic
     integer, intent(in) :: n

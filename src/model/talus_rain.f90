@@ -8,11 +8,10 @@ module talus_rain
   use talus_const, only: mm_per_hour
   use talus_status, only: status_t
   use talus_table_csv, only: table_csv_t, table_csv_status
-  use talus_deck_csv, only: hydrograph_read, hydrograph_check
+  use talus_deck_csv, only: hydrograph_read
   implicit none
   private
-  public :: rain_t, rain_constant, rain_hydrograph, rain_read, rain_rate, rain_total
-  public :: rain_next_change
+  public :: rain_t, rain_constant, rain_read, rain_total, rain_next_change
 
   type :: rain_t
     real(dp), allocatable :: time(:)      !! start of each step [s], increasing
@@ -31,24 +30,6 @@ contains
     rain%intensity(1) = mm_each_hour*mm_per_hour
   end function rain_constant
 
-  !> Rain in steps.
-  subroutine rain_hydrograph(time, mm_each_hour, rain, status)
-    real(dp), intent(in) :: time(:)         !! start of each step [s], increasing
-    real(dp), intent(in) :: mm_each_hour(:) !! intensity [mm/h], >= 0
-    type(rain_t), intent(out) :: rain
-    type(status_t), intent(inout) :: status
-    type(table_csv_t) :: table
-    integer :: i
-
-    table%place = 'hydrograph, row '
-    allocate (table%values(2, size(time)))
-    table%values(1, :) = time
-    table%values(2, :) = mm_each_hour
-    table%lines = [(i, i=1, size(time))]
-    call hydrograph_check(table)
-    call take(table, rain, status)
-  end subroutine rain_hydrograph
-
   !> Rain from a CSV file with the header time_s,mm_per_h.
   subroutine rain_read(path, rain, status)
     character(*), intent(in) :: path
@@ -57,31 +38,11 @@ contains
     type(table_csv_t) :: table
 
     call hydrograph_read(path, table)
-    call take(table, rain, status)
-  end subroutine rain_read
-
-  !> The rain of a table without faults.
-  subroutine take(table, rain, status)
-    type(table_csv_t), intent(in) :: table
-    type(rain_t), intent(inout) :: rain
-    type(status_t), intent(inout) :: status
-
     call table_csv_status(table, status)
     if (table%faults > 0) return
     rain%time = table%values(1, :)
     rain%intensity = table%values(2, :)*mm_per_hour
-  end subroutine take
-
-  !> Intensity at a time [m/s], >= 0.
-  pure real(dp) function rain_rate(rain, time) result(rate)
-    type(rain_t), intent(in) :: rain
-    real(dp), intent(in) :: time !! [s]
-    integer :: i
-
-    i = step_of(rain, time)
-    rate = 0.0_dp
-    if (i > 0) rate = rain%intensity(i)
-  end function rain_rate
+  end subroutine rain_read
 
   !> Depth of rain that falls from t0 to t1 [m]: the exact integral of the intensity.
   pure real(dp) function rain_total(rain, t0, t1) result(depth)

@@ -13,21 +13,19 @@ module talus_soil_law
   use talus_points, only: soil_points
   use talus_status, only: status_t, status_set, status_failed, status_deck
   use talus_objective, only: objective_increments, tensors_rotate
-  use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energy, &
-    elastic_energies, elastic_bilinears
+  use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energies, &
+    elastic_bilinears
   use talus_drucker_prager, only: cones_t, drucker_prager_returns, secant_shear_ratios
   use talus_strength, only: strength_t, strength_prepare, strength_cones, strength_excess, &
     suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
     suction_strain_increment, suction_strain_none
   use talus_damage, only: damage_t, damage_prepare, damage_advance, damage_degrade, &
-    damage_stored, damage_energies, driver_none, driver_plastic_strain, &
-    split_deviatoric
+    damage_energies, driver_none, driver_plastic_strain, split_deviatoric
   implicit none
   private
-  public :: soil_law_t, soil_law_prepare, soil_update, soil_trial, soil_excess, soil_returns
-  public :: soil_stored_energy, soil_stored_energies
-  public :: bishop_factor, bishop_subtract, soil_needs_strain
+  public :: soil_law_t, soil_law_prepare, soil_trial, soil_excess, soil_returns
+  public :: soil_stored_energies, bishop_factor, bishop_subtract, soil_needs_strain
 
   integer, parameter, public :: plasticity_none = 0, plasticity_drucker_prager = 1
   integer, parameter, public :: stress_net = 1, stress_bishop = 2
@@ -42,7 +40,7 @@ module talus_soil_law
   !> All of them, and those that soil without damage needs.
   integer, parameter, public :: history_size = 5, history_size_plastic = 2
 
-  !> Outcome of soil_update.
+  !> Outcome of soil_returns.
   integer, parameter, public :: soil_ok = 0, soil_inverted = 1, soil_not_finite = 2
 
   !> Everything the update of one soil needs: set the components, then soil_law_prepare.
@@ -84,51 +82,6 @@ contains
     soil_needs_strain = law%damage%driver /= driver_none .and. &
       law%damage%driver /= driver_plastic_strain
   end function soil_needs_strain
-
-  !> Advance one point over one step.
-  !!
-  !! On a failure (ierr /= 0) the state of the point is not to be used further. The stiffness
-  !! scale is (1 - D) times the secant shear ratio, between 0 and 1; its floor is the caller's.
-  pure subroutine soil_update(law, f_old, f_new, suction_old, suction_new, saturation, &
-    effective, strain, history, stress, stiffness_scale, ierr)
-    type(soil_law_t), intent(in) :: law            !! prepared
-    real(dp), intent(in) :: f_old(4)               !! deformation gradient before [-]
-    real(dp), intent(in) :: f_new(4)               !! deformation gradient after [-]
-    real(dp), intent(in) :: suction_old            !! s = -p_w before [Pa]
-    real(dp), intent(in) :: suction_new            !! s after [Pa]
-    real(dp), intent(in) :: saturation             !! effective saturation after [-]
-    real(dp), intent(inout) :: effective(4)        !! undamaged stress [Pa], tension +
-    real(dp), intent(inout) :: strain(4)           !! total strain [-]; kept only for damage
-    real(dp), intent(inout) :: history(history_size) !! see history_*
-    real(dp), intent(out) :: stress(4)             !! damaged stress without pore pressure [Pa]
-    real(dp), intent(out) :: stiffness_scale       !! stiffness left over the elastic one [-]
-    integer, intent(out) :: ierr                   !! one of soil_ok, soil_inverted, ...
-    real(dp), dimension(soil_points,4) :: old, new, before, total, trial, damaged
-    real(dp) :: record(soil_points,history_size)
-    real(dp), dimension(soil_points) :: suction, suction_was, wet, det_mid, volume, det_new, left, &
-      energy_old, energy_new
-    integer :: code(soil_points)
-
-    old(1, :) = f_old
-    new(1, :) = f_new
-    before(1, :) = effective
-    total(1, :) = strain
-    record(1, :) = history
-    suction_was(1) = suction_old
-    suction(1) = suction_new
-    wet(1) = saturation
-    call soil_trial(law, 1, old, new, suction_was, suction, before, total, trial, det_mid, volume, &
-                    det_new)
-    volume(1) = 0.5_dp*(volume(1) + det_new(1))
-    call soil_returns(law, 1, det_mid, volume, suction, wet, before, total, trial, record, &
-      damaged, left, energy_old, energy_new, code)
-    effective = trial(1, :)
-    strain = total(1, :)
-    history = record(1, :)
-    stress = damaged(1, :)
-    stiffness_scale = left(1)
-    ierr = code(1)
-  end subroutine soil_update
 
   !> First half of the update, for n points of one soil: turn the stress, add the elastic stress of
   !! the strain less the suction strain.
@@ -187,6 +140,9 @@ contains
   end subroutine soil_excess
 
   !> Second half of the update, at n points: return to the cone, raise damage, degrade.
+  !!
+  !! On a failure (ierr /= 0) the state of the point is not to be used further. The stiffness
+  !! scale is (1 - D) times the secant shear ratio, between 0 and 1; its floor is the caller's.
   pure subroutine soil_returns(law, n, det_mid, volume, suction, saturation, before, strain, &
     effective, history, stress, stiffness_scale, energy_old, energy_new, ierr)
     type(soil_law_t), intent(in) :: law              !! prepared
@@ -305,20 +261,7 @@ contains
     end do
   end subroutine plastic_work
 
-  !> Energy stored elastically per current volume [J/m3], reduced by damage.
-  pure real(dp) function soil_stored_energy(law, effective, d)
-    type(soil_law_t), intent(in) :: law
-    real(dp), intent(in) :: effective(4) !! undamaged stress [Pa]
-    real(dp), intent(in) :: d            !! damage [-]
-
-    if (d > 0.0_dp) then
-      soil_stored_energy = damage_stored(law%damage, law%elastic, effective, d)
-    else
-      soil_stored_energy = elastic_energy(law%elastic, effective)
-    end if
-  end function soil_stored_energy
-
-  !> The same at n points of a block.
+  !> Energy stored elastically per current volume at n points of a block, reduced by damage.
   pure subroutine soil_stored_energies(law, n, effective, d, energy)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: n

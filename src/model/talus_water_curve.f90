@@ -20,8 +20,7 @@ module talus_water_curve
   use talus_kinds, only: dp, i4, i8
   implicit none
   private
-  public :: water_curve_t, curve_at_pressure, curve_at_saturation, curve_effective_saturation
-  public :: curve_flux_potential, curve_bits
+  public :: water_curve_t, curve_at_pressure, curve_at_saturation, curve_bits
 
   integer, parameter, public :: curve_degree = 5  !! of the polynomials of a cell
   integer, parameter, public :: mantissa_bits = 52
@@ -212,35 +211,6 @@ contains
 
     within = min(1.0_dp, max(-1.0_dp, v))
   end function within
-
-  !> Effective saturation S_e = (S_r - S_res)/(S_max - S_res) at a pore pressure.
-  pure real(dp) function curve_effective_saturation(curve, pressure) result(effective)
-    type(water_curve_t), intent(in) :: curve
-    real(dp), intent(in) :: pressure !! p_w [Pa], + in compression
-    real(dp) :: saturation, conductivity_ratio, flux_potential, capacity
-
-    call curve_at_pressure(curve, pressure, saturation, conductivity_ratio, flux_potential, &
-      capacity)
-    effective = (saturation - curve%residual)/(curve%maximum - curve%residual)
-  end function curve_effective_saturation
-
-  !> Phi alone [Pa]: for a neighbour in another soil, seen with this soil's curve.
-  pure real(dp) function curve_flux_potential(curve, pressure) result(flux_potential)
-    type(water_curve_t), intent(in) :: curve
-    real(dp), intent(in) :: pressure !! p_w [Pa], + in compression
-    real(dp) :: s, v, conductivity_ratio
-    integer :: i
-
-    s = -pressure
-    if (s <= curve%entry) then
-      flux_potential = curve%potential_entry + (curve%entry - s)
-      return
-    end if
-    s = min(s, curve%driest)
-    i = cell_at(curve, s)
-    v = (s - curve%coef(row_centre, i))*curve%coef(row_inverse_half, i)
-    call flow_at(curve%coef(:, i), v, conductivity_ratio, flux_potential)
-  end function curve_flux_potential
 
   !> Cell that holds a suction above the air entry.
   pure integer function cell_at(curve, suction) result(i)

@@ -10,8 +10,8 @@ module talus_audit
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_soil_law, only: soil_stored_energies, stress_bishop, history_damage, &
-    history_plastic_work, history_damage_work
+  use talus_soil_law, only: soil_stored_energies, history_damage, history_plastic_work, &
+    history_damage_work
   use talus_soil_step, only: motion_t
   use talus_inertia, only: inertia_momentum
   use talus_sum, only: sum_products, sum_apart

@@ -13,12 +13,12 @@ module talus_steady
   use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_conditions, only: inlets_t, inlet_head, inlet_seepage
   use talus_storage, only: storage_content
-  use talus_darcy, only: seepage_t, seepage_shape, cell_outflow
+  use talus_darcy, only: seepage_t, seepage_shape
   use talus_seepage, only: seepage_supply
   use talus_seepage_newton, only: newton_t, newton_prepare, newton_solve
   implicit none
   private
-  public :: steady_solve, steady_heads, steady_inflow
+  public :: steady_solve, steady_heads
 
   !> First, last and smallest pseudo-step [s].
   real(dp), parameter :: step_first = 3600.0_dp, step_last = 1.0e12_dp, step_least = 1.0e-3_dp
@@ -171,19 +171,4 @@ contains
     inlets%rain = [inlets%rain, 0]
     inlets%offset = [inlets%offset, inlets%offset(m+1)]
   end subroutine add_head
-
-  !> Water that enters at each inlet in a steady state [m2/s], negative where it leaves, (m).
-  function steady_inflow(seepage, disc, inlets) result(inflow)
-    type(seepage_t), intent(in) :: seepage
-    type(disc_t), intent(in) :: disc
-    type(inlets_t), intent(in) :: inlets
-    real(dp) :: inflow(size(inlets%node))
-    integer :: k
-
-    inflow = seepage_supply(seepage, inlets, 0.0_dp, 1.0_dp)
-    do k = 1, size(inlets%node)
-      if (seepage%held(inlets%node(k))) &
-        inflow(k) = cell_outflow(disc%dual, seepage%q, inlets%node(k))
-    end do
-  end function steady_inflow
 end module talus_steady

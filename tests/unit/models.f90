@@ -3,6 +3,7 @@
 module models
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
+  use talus_nodes, only: mesh_t
   use talus_mesh_box, only: mesh_box
   use talus_mesh_perturb, only: mesh_perturb
   use talus_dual_cells, only: dual_build, dual_spacing
@@ -23,7 +24,7 @@ module models
   implicit none
   private
   public :: square_t, model_t, square_disc, ground_elastic, ground_wet, ground_prepare, model_build
-  public :: model_set, is_boundary, noise
+  public :: model_set, is_boundary, mesh_area, noise
 
   !> A square with its lower left corner at the origin.
   type :: square_t
@@ -177,6 +178,20 @@ contains
     outer = .false.
     outer(disc%mesh%boundary_edge(1, :)) = .true.
   end function is_boundary
+
+  !> Area inside the boundary [m2], by the boundary edges alone.
+  pure real(dp) function mesh_area(mesh) result(area)
+    type(mesh_t), intent(in) :: mesh
+    real(dp) :: a(2), b(2)
+    integer :: i
+
+    area = 0.0_dp
+    do i = 1, size(mesh%boundary_edge, 2)
+      a = mesh%x(:, mesh%boundary_edge(1, i)) - mesh%x(:, 1)
+      b = mesh%x(:, mesh%boundary_edge(2, i)) - mesh%x(:, 1)
+      area = area + 0.5_dp*(a(1)*b(2) - a(2)*b(1))
+    end do
+  end function mesh_area
 
   !> Reproducible values between -1/2 and 1/2 without a pattern.
   pure function noise(rows, columns) result(values)

@@ -3,7 +3,8 @@
 module talus_deck_check_stage
   use talus_kinds, only: dp
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, stage_t, soil_t, deck_exceeds, deck_acts_in, deck_held
+  use talus_deck_types, only: deck_t, stage_t, soil_t, deck_given, deck_exceeds, deck_acts_in, &
+    deck_held
   use talus_deck_store, only: store_t, store_sections
   use talus_deck_report, only: complain => report_error, warn => report_warning
   implicit none

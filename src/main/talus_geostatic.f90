@@ -6,6 +6,8 @@ module talus_geostatic
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t
   use talus_ground, only: ground_t
+  use talus_state, only: state_t
+  use talus_soil_law, only: history_eqps
   use talus_session, only: session_t
   use talus_setup_ground, only: ground_intact
   use talus_initial, only: initial_water
@@ -89,6 +91,18 @@ contains
       '; the slope does not stand, or steps_max is too small; '//saved)
   end subroutine report_unbalanced
 
+  !> Plastic strain has softened the stabilisation: keep it there, where forces would jump otherwise.
+  pure subroutine keep_settled(state)
+    type(state_t), intent(inout) :: state
+
+    if (.not. allocated(state%stiffness)) return
+    associate (eqps => state%history(history_eqps, :))
+      if (.not. any(eqps > 0.0_dp)) return
+      if (.not. allocated(state%settled)) state%settled = 0.0_dp*eqps
+      state%settled = state%settled + eqps
+    end associate
+  end subroutine keep_settled
+
   !> Count displacement, strain and the history of the soil from here.
   subroutine reset(session)
     type(session_t), intent(inout) :: session
@@ -101,7 +115,10 @@ contains
       state%v = 0.0_dp
       state%ahead = 0.0_dp
       if (allocated(state%strain)) state%strain = 0.0_dp
-      if (allocated(state%history)) state%history = 0.0_dp
+      if (allocated(state%history)) then
+        call keep_settled(state)
+        state%history = 0.0_dp
+      end if
     end associate
   end subroutine reset
 end module talus_geostatic

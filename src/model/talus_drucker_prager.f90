@@ -11,7 +11,7 @@ module talus_drucker_prager
   implicit none
   private
   public :: cone_t, cones_t, cone_shape, cones_set, drucker_prager_returns, drucker_prager_excess
-  public :: secant_shear_ratios
+  public :: secant_shear_ratios, stress_roots
 
   !> Fits of the cone to the Mohr-Coulomb pyramid.
   integer, parameter, public :: fit_plane_strain = 1, fit_compression = 2, fit_extension = 3
@@ -142,6 +142,21 @@ contains
       excess(i) = max(i1 - cones%i1_max(i), -radius, j2 - radius*radius) + 0.0_dp*j2
     end do
   end subroutine drucker_prager_excess
+
+  !> sqrt(J2) at n points [Pa].
+  pure subroutine stress_roots(n, stress, root)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: stress(soil_points,4)
+    real(dp), intent(inout) :: root(soil_points)
+    real(dp) :: mean
+    integer :: i
+
+    do i = 1, n
+      mean = (stress(i, 1) + stress(i, 2) + stress(i, 3))*third
+      root(i) = sqrt(0.5_dp*((stress(i, 1) - mean)**2 + (stress(i, 2) - mean)**2 &
+        + (stress(i, 3) - mean)**2) + stress(i, 4)*stress(i, 4))
+    end do
+  end subroutine stress_roots
 
   !> Secant shear stiffness of the plastic state over the elastic one at n points,
   !! sqrt(J2)/(sqrt(J2) + G gamma_p), with gamma_p = sqrt(3) times the equivalent plastic strain,

@@ -120,6 +120,10 @@ contains
     call field_2(x, 'history', 'plasticity and damage', state%history, status)
     call field_1(x, 'stiffness', 'stabilisation', state%stiffness, status)
     call field_1(x, 'stiffness_old', 'stabilisation', state%stiffness_old, status)
+    if (.not. x%writes .and. allocated(state%stiffness)) then
+      if (h5_exists(x%file, x%group//'settled')) state%settled = 0.0_dp*state%stiffness
+    end if
+    call field_1(x, 'settled', 'stabilisation', state%settled, status)
     call field_1(x, 'stabilising', 'stabilisation', state%stabilising, status)
     call field_1(x, 'stabilising_lost', 'stabilisation', state%stabilising_lost, status)
     call field_1(x, 'volume_work', 'stress', state%volume_work, status)

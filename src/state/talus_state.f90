@@ -38,6 +38,8 @@ module talus_state
     real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n) or (2,n)
     real(dp), allocatable :: stiffness(:)       !! stiffness left over the elastic one, (n)
     real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
+    real(dp), allocatable :: settled(:)         !! plastic strain that counts as none, of (4.11)
+                                                !! still; once some was reset, (n)
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
     real(dp), allocatable :: stabilising_lost(:) !! lost there as the soil softened [J/m], (n)
     real(dp), allocatable :: volume_work(:)     !! sum of stored energy dJ [J/m3], (n)

@@ -17,6 +17,7 @@ module talus_stress_update
     stress_bishop, stress_net
   use talus_elastic, only: elastic_energies
   use talus_damage, only: driver_none, damage_parts
+  use talus_drucker_prager, only: secant_shear_ratios, stress_roots
   use talus_suction_strain, only: suction_strain_increment, suction_strain_none
   use talus_cell_water, only: cells_invert
   implicit none
@@ -139,10 +140,33 @@ contains
     if (allocated(state%strain)) call points_put(n, strain, state%strain(:, first:last))
     if (allocated(state%stiffness)) then
       state%stiffness_old(first:last) = state%stiffness(first:last)
+      if (allocated(state%settled)) call soften_settled(ground%law(soil), first, n, effective, &
+        state, left)
       state%stiffness(first:last) = max(disc%floor, left(:n))
     end if
     call piola_stresses(n, disc%dual%area(first:last), f_new, stress, q(:, first:last))
   end subroutine update_block
+
+  !> Stiffness left where some plastic strain of a block counts as none: it is softened all the same.
+  pure subroutine soften_settled(law, first, n, effective, state, left)
+    type(soil_law_t), intent(in) :: law
+    integer, intent(in) :: first, n
+    real(dp), intent(in) :: effective(soil_points,4)  !! undamaged stress after [Pa]
+    type(state_t), intent(in) :: state
+    real(dp), intent(inout) :: left(soil_points)
+    real(dp), dimension(soil_points) :: eqps, ratio, root
+    integer :: j
+
+    eqps(:n) = state%settled(first:first+n-1) + state%history(history_eqps, first:first+n-1)
+    call stress_roots(n, effective, root)
+    call secant_shear_ratios(n, law%elastic%shear, root, eqps, ratio)
+    do j = 1, n
+      if (.not. state%settled(first+j-1) > 0.0_dp) cycle
+      left(j) = ratio(j)
+      if (law%damage%driver /= driver_none) left(j) = left(j) &
+        *(1.0_dp - state%history(history_damage, first+j-1))
+    end do
+  end subroutine soften_settled
 
   !> Whether each point of a block ever yielded or was damaged: > 0.
   pure subroutine history_get(state, first, n, worn)

@@ -81,7 +81,8 @@ def cell(text):
 def table(head, rows, right=()):
     """A Markdown table; `right` holds the numbers of the columns that are aligned to the right."""
     rule = ["--:" if i in right else "---" for i in range(len(head))]
-    lines = [head, rule, *[[cell(value) for value in row] for row in rows]]
+    lines = [[cell(value) for value in row] for row in (head, *rows)]
+    lines.insert(1, rule)
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 

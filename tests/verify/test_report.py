@@ -177,11 +177,11 @@ class Report(unittest.TestCase):
         solved = story_of("h1", runs=runs)
         for row in solved["runs"][3:]:
             row["exact"] = True
-        zero = story_of("h2", runs=runs[:3], order=False, work=False, quantity="distance")
+        zero = story_of("h2", runs=runs[:3], order=False, work=False, quantity="|distance|")
         text = "\n".join(self.write(solved, zero))
         orders = [row["order"] for row in self.rows("studies.csv")]
         self.assertEqual(orders, ["", "2.000", "2.000", *[""] * 6])
-        self.assertIn("| series | nodes | spacing [m] | distance | order |", text)
+        self.assertIn("| series | nodes | spacing [m] | \\|distance\\| | order |", text)
         self.assertIn("verify_h1_convergence.png", text)
         self.assertNotIn("verify_h2_", text)
         self.assertEqual({row["series"] for row in drawn_rows(solved["runs"])}, {"fine"})

@@ -72,7 +72,10 @@ def load_stories(output, cases):
             story = {"id": "", "title": "", "error": "", "reference": "", "about": "", "trouble": ""}
             lists = {
                 name: []
-                for name in ("runs", "targets", "remedies", "tables", "pictures", "notes", "published")
+                for name in (
+                    *("runs", "targets", "cautions", "remedies", "tables", "pictures", "notes"),
+                    "published",
+                )
             }
             story |= lists | json.loads(path.read_text(encoding="utf-8")) | {"key": case.key}
             add_orders(story)

@@ -56,6 +56,7 @@ class Case:
             "checks": 0,
             "runs": [],
             "targets": [],
+            "cautions": [],
             "remedies": [],
             "tables": [],
             "pictures": [],
@@ -216,6 +217,14 @@ class Case:
         span = f"limit {limit:.6g}" if low is None else f"{low:.6g} to {limit:.6g}"
         word = "ok  " if met else ("miss" if good else "FAIL")
         print(f"{word} {what}: {value:.6g} ({span}: {why})")
+
+    def caution(self, text):
+        """What a reader should know of a target that is met only as worded: a sentence or two, with numbers.
+
+        The report prints it below the missed targets, in its first lines.
+        """
+        self.story["cautions"].append(text)
+        print(f"     read with care: {text}")
 
     def compare_time(self, result, error, program, what=None):
         """Time of a run against what a program of published.csv needs for the same error, or a finer one.

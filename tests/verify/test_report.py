@@ -23,7 +23,7 @@ import run_cases  # noqa: E402
 from case_list import find_cases, select_cases  # noqa: E402
 from report import load_stories, store_run, store_story, thinned, write_report  # noqa: E402
 from report_pictures import drawn_rows  # noqa: E402
-from report_text import number  # noqa: E402
+from report_text import ASKED, number  # noqa: E402
 from talus_case import seconds_at  # noqa: E402
 
 # A check.py that needs no program: targets met, missed, failed; or an end before the verdict.
@@ -39,6 +39,7 @@ case = Case(__file__.rsplit("/", 1)[0], id={id!r}, title="a made-up case", error
 sys.exit(case.verdict())
 """
 MET = 'case.target("drift", 0.5, 1.0, "by hand")'
+CAREFUL = MET + '\ncase.caution("Half of it is drift.")'
 MISSED = 'case.target("drift", 2.5, 1.0, "by hand", held=(2.0, 3.0))'
 FAILED = 'case.target("drift", 9.5, 1.0, "by hand", held=(2.0, 3.0))'
 CRASHED = 'raise ValueError("no such field")'
@@ -146,17 +147,41 @@ class Report(unittest.TestCase):
         self.assertIn("| error 0 | **0.01** |", rows[1])
         self.assertEqual([row["asked"] for row in self.rows("targets.csv")], ["no", "no", "yes"])
 
+    def test_what_was_asked_is_told_once_a_case(self):
+        stories = [
+            story_of("beam", [(0.01, 0.05), (0.02, 0.03)], kind="hard", id="hard 3"),
+            story_of("slopes", [(1.05, 1.0)], id="S1 bracket"),
+            story_of("other", [(1.0, 2.0)], id="S1"),
+        ]
+        for story in stories:
+            for target in story["targets"]:
+                target["asked"] = True
+        text = "\n".join(self.write(*stories))
+        for words in (ASKED["hard 3"], ASKED["S1 bracket"], ASKED["S1"]):
+            self.assertEqual(text.count(f"| {words} |"), 1)
+        self.assertIn(") |  | error 1 | **0.02** |", text)
+        self.assertNotIn("Our own", text)
+
+    def test_cautions_stand_below_the_misses(self):
+        careful = story_of("m7", [(0.01, 0.02)], cautions=["Soil is 1000 times as stiff."])
+        lines = self.write(careful, story_of("h1", [(0.03, 0.02)]))
+        place = lines.index("**Met as worded, read with care:**")
+        self.assertIn("[H1]", lines[place - 2])
+        self.assertEqual(lines[place + 2], "- [M7](#m7-title-of-m7) Soil is 1000 times as stiff.")
+        self.assertLess(place + 3, next(i for i, k in enumerate(lines) if k.startswith("Written by")))
+        self.assertNotIn("with care", "\n".join(self.write({**careful, "cautions": []})))
+
     def test_no_orders_where_they_mean_nothing(self):
         runs = [("fine", h, 3 * h**2, 1 / h) for h in (0.1, 0.05, 0.01)]
         runs += [("solved", h, 1e-6 / h, 1 / h) for h in (0.1, 0.05, 0.01)]
         solved = story_of("h1", runs=runs)
         for row in solved["runs"][3:]:
             row["exact"] = True
-        zero = story_of("h2", runs=runs[:3], order=False, work=False, quantity="distance")
+        zero = story_of("h2", runs=runs[:3], order=False, work=False, quantity="|distance|")
         text = "\n".join(self.write(solved, zero))
         orders = [row["order"] for row in self.rows("studies.csv")]
         self.assertEqual(orders, ["", "2.000", "2.000", *[""] * 6])
-        self.assertIn("| series | nodes | spacing [m] | distance | order |", text)
+        self.assertIn("| series | nodes | spacing [m] | \\|distance\\| | order |", text)
         self.assertIn("verify_h1_convergence.png", text)
         self.assertNotIn("verify_h2_", text)
         self.assertEqual({row["series"] for row in drawn_rows(solved["runs"])}, {"fine"})
@@ -285,7 +310,7 @@ class Report(unittest.TestCase):
         self.assertEqual(select_cases(cases, ["H3", "H9"])[1], ["H9"])
 
     def test_what_a_case_says_is_what_is_reported(self):
-        states = {"met": MET, "missed": MISSED, "failed": FAILED, "crashed": CRASHED}
+        states = {"met": CAREFUL, "missed": MISSED, "failed": FAILED, "crashed": CRASHED}
         for name, body in states.items():
             self.add_case(name, body=body)
         found = {}
@@ -299,6 +324,7 @@ class Report(unittest.TestCase):
         text = "\n".join(self.write())
         self.assertIn("**2 of 3 targets are not met:**", text)
         self.assertIn("A made-up case.", text)
+        self.assertIn(" Half of it is drift.", text)
 
     def test_exit_codes(self):
         for name, body in {"met": MET, "missed": MISSED, "failed": FAILED}.items():
@@ -331,6 +357,8 @@ class Report(unittest.TestCase):
         found = find_cases(Path(__file__).resolve().parents[1])
         self.assertLessEqual({"celia", "srivastava_yeh", "patch"}, {case.name for case in found})
         self.assertEqual(case_list.without_case([case.id for case in found]), [])
+        ids = {case.id for case in found}
+        self.assertLessEqual(set(ASKED), ids | {id.split(" ")[0] for id in ids})
 
 
 class Numbers(unittest.TestCase):

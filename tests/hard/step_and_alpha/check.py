@@ -52,8 +52,8 @@ for what, name, replace, held in (
     curves[what] = other[3]
     case.study(what, other[3], 0.35, abs(other[0] / largest - 1.0))
     for quantity, one, two in (("greatest", largest, other[0]), ("mean", mean, other[1])):
-        change = abs(two / one - 1.0)
-        case.target(f"{what}: change of the {quantity} displacement", change, 0.01, "limit", held=(0.0, held))
+        change, moved = abs(two / one - 1.0), f"{what}: change of the {quantity} displacement"
+        case.target(moved, change, 0.01, "limit", held=(0.0, held), asked=True)
     case.check(f"{what}: change of the time of failure", abs(other[2] / trigger - 1.0), 0.15, "held")
 case.picture(
     "Largest displacement during the slide",

@@ -101,12 +101,14 @@ case.target(
     worst,
     2.0,
     "no growth",
+    asked=True,
 )
 case.target(
     "soil at 1.10 of the estimate: kinetic energy at 0.99 over that at 1.10, worst combination",
     1.0 / least,
     0.1,
     "energy grows at least tenfold, until the soil yields, breaks or turns inside out",
+    asked=True,
 )
 case.remedy(
     "a step of 1.10 of the estimate; remedy: at most 0.99 of it",
@@ -188,12 +190,14 @@ for what, replace in (
         below,
         0.01,
         "no growth, fine steps",
+        asked=True,
     )
     case.target(
         f"seepage, {what}: difference at 0.99 of the estimate over that at 1.10",
         below / above,
         0.01,
         "at 1.10 it grows, at least a hundredfold",
+        asked=True,
     )
 above = [error[-1] for error in errors.values()]
 case.remedy(

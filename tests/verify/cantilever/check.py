@@ -112,6 +112,11 @@ case.target(
     low=1.9,
     asked=True,
 )
+case.caution(
+    f"The coarsest pair of spacings, 4 to 8 over the depth, has order {orders[0]:.2f} in displacement (L2); "
+    "the target counts orders from 8 spacings over the depth on, the least of which is "
+    f"{orders[1:].min():.2f}."
+)
 case.check(
     "one level, h = 0.25 m: departure of the error from (n - 3/4)/n^3, n = 4",
     abs(one[0] / (3.25 / 64) - 1),

@@ -18,7 +18,7 @@ case = Case(
     error="largest error of head over its fall",
     reference="Darcy's law: the head falls by q/k per metre",
 )
-largest = 0.0
+largest, curves = 0.0, {}
 for direction, change, k, axis, length in (
     ("x", [], 4.0e-5, 0, 2.0),
     ("y", [("'left'", "'bottom'"), ("'right'", "'top'")], 1.0e-5, 1, 1.0),
@@ -33,6 +33,11 @@ for direction, change, k, axis, length in (
             f"along {direction}, perturbed nodes", result, spacing, np.max(np.abs(head - exact)) / fall
         )
         largest = max(largest, np.max(np.abs(head - exact)))
+        if spacing == 0.1:
+            along = result.nodes[:, axis]
+            curves[f"along {direction}, k = {k:g} m/s"] = (along, head, "C0o" if axis == 0 else "C1s")
+            line = ([0.0, length], [3.0 + fall, 3.0], "k-" if axis == 0 else "k--")
+            curves[f"exact, along {direction}"] = line
         velocity = result.field("seepage_velocity")
         case.check(
             f"largest error of velocity {name}, relative",
@@ -54,5 +59,11 @@ for direction, change, k, axis, length in (
             "flux is counted exactly",
         )
         case.check(f"water error {name}", abs(float(result.summary["water_error"])), 1e-12, "round-off")
+case.picture(
+    "Head along the flow at every node",
+    "distance along the flow from where the water enters [m]",
+    "head [m]",
+    curves,
+)
 case.target("largest error of head [m]", largest, 1e-8, "linear exactness, and the transient has died out")
 sys.exit(case.verdict())

@@ -40,7 +40,8 @@ for name, changes, spacing in [r for r in runs if r[0] == "one level" or r[2] < 
     error = np.abs(history["energy_error"]).max()
     case.study(name, result, spacing, error)
     if spacing == 0.25:
-        case.target(f"energy error, {name}, spacing {spacing} m", error, 1e-3, "the accuracy asked for")
+        what = f"energy error, {name}, spacing {spacing} m"
+        case.target(what, error, 1e-3, "the accuracy asked for", asked=True)
         case.picture(
             f"Energies, {name}",
             "Time [s]",

@@ -102,7 +102,8 @@ if case.full:
     RATIO = 0.02
     circle = bishop(RATIO)
     factor = reduced(RATIO)
-    case.target("c/(gamma H) = 0.02 falls: its factor of safety", factor, 1.0, "asked for", held=(1.0, 1.056))
+    what = "c/(gamma H) = 0.02 falls: its factor of safety"
+    case.target(what, factor, 1.0, "asked for", held=(1.0, 1.056), asked=True)
     case.note(
         "The slope of example 1 was asked to fall at c/(gamma H) = 0.02. TALUS finds a factor of safety of "
         f"{factor:.3f} there, and Bishop's circles {circle:.3f} (tests/verify/slope_stability/bishop.py): "

@@ -46,7 +46,8 @@ shored = history["stage"] == "shored"
 case.check(
     "shored: it stands [m]", history["maximum_displacement"][shored][-1], 0.05, "elastic settlement only"
 )
-case.target("energy error of the fall", float(weak.summary["energy_error"]), 1e-3, "the accuracy asked for")
+lost = float(weak.summary["energy_error"])
+case.target("energy error of the fall", lost, 1e-3, "the accuracy asked for", asked=True)
 case.check_true(
     f"opened: it falls, by {history['maximum_displacement'][-1]:.2f} m in {history['time'][-1]:.2f} s",
     history["maximum_displacement"][-1] > 0.5,

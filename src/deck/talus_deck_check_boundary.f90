@@ -181,6 +181,8 @@ contains
     call check_hydrograph(store, section, boundary%hydrograph, messages, table)
     if (size(table%values, 2) > 0) call check_start(store, section, boundary, table%values(1, 1), &
                                                     deck, messages)
+    if (size(table%values, 2) > 1) call check_end(store, section, boundary, &
+      table%values(:, size(table%values, 2) - 1:), deck, messages)
   end subroutine check_rain
 
   !> Rain that begins only when its stage is over.
@@ -203,6 +205,28 @@ contains
       end associate
     end do
   end subroutine check_start
+
+  !> A last row that repeats the value before it was meant as the end of the rain, which it is not.
+  subroutine check_end(store, section, boundary, rows, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(boundary_t), intent(in) :: boundary
+    real(dp), intent(in) :: rows(2,2) !! the last two: time [s], rain [mm/h]
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: i
+
+    if (.not. rows(2, 2) > 0.0_dp .or. abs(rows(2, 2) - rows(2, 1)) > 0.0_dp) return
+    do i = 1, size(deck%stage)
+      associate (stage => deck%stage(i))
+        if (stage%solve == 'soil' .or. .not. deck_acts_in(boundary, stage%name)) cycle
+        if (.not. deck_exceeds(stage%duration*(1.0_dp - 1.0e-12_dp), rows(1, 2))) cycle
+        call warn(store, section, 'hydrograph', 'it rains on in stage '''//stage%name// &
+          ''' to its end at '//text_of(stage%duration)//' s: the value of the last row, at '// &
+          text_of(rows(1, 2))//' s, holds from there on', messages)
+      end associate
+    end do
+  end subroutine check_end
 
   !> A group that holds, loads and wets nothing, unless a key that was refused was to do so.
   subroutine check_effect(store, section, boundary, messages)

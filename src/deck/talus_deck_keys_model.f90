@@ -49,7 +49,10 @@ contains
              'x of the body''s left end (added to x of a file).')
     call key(t, 'origin_y', 'real', 'm', '0', '[-1e7, 1e7]', &
              'y of the body''s bottom (added to y of a file).')
-    call key(t, 'file', 'path', '', '*', '', 'Text file of nodes and elements.', 'kind=file')
+    call key(t, 'file', 'path', '', '*', '', 'Text file: `nodes N`, then N '// &
+             'lines `x y` or `x y soil` (number of the &soil); `elements M`, then M lines `3 a b c` '// &
+             'or `4 a b c d` with the corners'' nodes, counted from 1. # begins a comment.', &
+             'kind=file')
   end subroutine keys_add_geometry
 
   !> Keys of &nodes.

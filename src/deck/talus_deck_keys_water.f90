@@ -71,7 +71,9 @@ contains
              'the history has their reaction: '// &
              'the force on the soil.')
     call key(t, 'where', 'string', '', '*', 'left|right|bottom|top|face|surface|box|all', &
-             'Which part: a side, the face of a slope, the surface (top and face), a box or all.')
+             'Which part: a side, the face of a slope, the surface (top and face), a box or all. '// &
+             'Of a box, supports and heads count for every node in it, also inside the body; loads '// &
+             'and water count along the boundary edges with both ends in it.')
     call key(t, 'from_x', 'real', 'm', '', '[-1e7, 1e7]', &
         'Left end of the box; absent: unbounded.', &
              'where=box')
@@ -114,7 +116,9 @@ contains
     call key(t, 'rain', 'real', 'mm/h', '', '[0, 1000]', &
              'Rain per horizontal area; give this or hydrograph.', 'water=rain')
     call key(t, 'hydrograph', 'path', '', '', '', &
-             'CSV file of time_s, mm_per_h; time counts from the start of the stage.', 'water=rain')
+             'CSV file of time_s, mm_per_h; time counts from the start of the stage. A value '// &
+             'holds up to the next time, the last one to the end of the stage; before the first '// &
+             'time there is no rain.', 'water=rain')
     call key(t, 'pressure_max', 'real', 'Pa', '0', '[0, 1e6]', &
              'Pore pressure at which rain ponds and the rest runs off.', 'water=rain')
   end subroutine keys_add_boundary

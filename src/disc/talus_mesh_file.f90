@@ -98,7 +98,8 @@ contains
       if (.not. allocated(mesh%soil)) cycle
       call word_integer(reader%word(3), mesh%soil(i), ok)
       if (ok) ok = mesh%soil(i) >= 1
-      if (.not. ok) call report(reader, 'the soil must be a whole number, 1 or more')
+      if (.not. ok) call report(reader, 'the soil must be a whole number, 1 or more, '// &
+        'after x and y; nodes are not numbered')
     end do
   end subroutine read_nodes
 

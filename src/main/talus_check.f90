@@ -6,6 +6,7 @@ module talus_check
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_deck_types, only: deck_t
+  use talus_boundary_sets, only: boundary_set_t, boundary_set_build
   use talus_session, only: session_t
   use talus_run, only: run_prepare
   use talus_setup_conditions, only: setup_conditions
@@ -59,6 +60,7 @@ contains
     if (status_failed(status)) return
     write (output_unit, '(a)') deck%resolved
     call print_model(session)
+    call print_boundaries(session)
     estimate%total = timer_seconds(session%timer, 'set_up')
     do i = 1, size(deck%stage)
       call print_stage(session, i, spectrum, estimate, status)
@@ -97,6 +99,23 @@ contains
     end associate
     call print_bytes(session)
   end subroutine print_model
+
+  !> What each boundary has found of the model.
+  subroutine print_boundaries(session)
+    type(session_t), intent(in) :: session
+    type(boundary_set_t) :: set
+    type(status_t) :: status
+    integer :: i
+
+    do i = 1, size(session%deck%boundary)
+      associate (boundary => session%deck%boundary(i))
+        call boundary_set_build(set, session%disc%mesh, session%disc%dual, boundary%where, &
+          [boundary%from_x, boundary%to_x, boundary%from_y, boundary%to_y], status)
+        write (output_unit, '(9a)') 'boundary ', text_of(i), ', ', boundary%where, ': ', &
+          text_of(size(set%node)), ' nodes, ', text_of(sum(set%length), 4), ' m of edges'
+      end associate
+    end do
+  end subroutine print_boundaries
 
   !> Neighbours of a list: least, mean and most.
   subroutine neighbours(name, offset)

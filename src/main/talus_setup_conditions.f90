@@ -49,6 +49,12 @@ contains
           empty = status_t()
           cycle
         end if
+        if (.not. any(sets(i)%length > 0.0_dp) .and. len(needs_edges(boundary)) > 0) then
+          call messages_error(messages, boundary%where_line, '&boundary where = '''// &
+            boundary%where//''': no edge of the boundary has both ends there, so '// &
+            needs_edges(boundary)//' would act on nothing; allowed: a part with an edge of the mesh')
+          cycle
+        end if
         call add_supports(boundary, sets(i), conditions)
         call conditions_load(conditions, sets(i), [boundary%traction_x, boundary%traction_y], &
                              boundary%pressure)
@@ -59,6 +65,18 @@ contains
     if (status_failed(status)) return
     call inlets_finish(conditions%inlets, paint, sets, rains)
   end subroutine setup_conditions
+
+  !> What of a boundary acts along its edges: '' for nothing.
+  pure function needs_edges(boundary) result(what)
+    type(boundary_t), intent(in) :: boundary
+    character(:), allocatable :: what
+
+    what = ''
+    if (boundary%water == 'flux') what = 'its flux'
+    if (boundary%water == 'rain') what = 'its rain'
+    if (abs(boundary%pressure) > 0.0_dp) what = 'its pressure'
+    if (abs(boundary%traction_x) + abs(boundary%traction_y) > 0.0_dp) what = 'its traction'
+  end function needs_edges
 
   !> Where water crosses the boundary in the steady state before the run: as in the first stage that
   !> moves water, with the antecedent rain in place of its rain, and the water table at the sides if

@@ -26,6 +26,9 @@ module talus_stages
   private
   public :: stage_run
 
+  !> A change of load between stages that is more than round-off and drizzle, over the load.
+  real(dp), parameter :: load_share = 1.0e-4_dp
+
 contains
 
   !> Run one stage of the deck.
@@ -65,6 +68,7 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
+    real(dp), allocatable :: before(:,:)
 
     call setup_conditions(session%deck, session%disc, stage%name, session%conditions, status)
     if (status_failed(status)) return
@@ -82,7 +86,10 @@ contains
           coupling_needed(session%ground)
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
           .not. session%joint
+        before = state%load
         call take_load(session)
+        session%new_load = any(abs(before) > 0.0_dp) .and. &
+          maxval(abs(state%load - before)) > load_share*maxval(abs(state%load))
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
         call start_motion(session, stage)

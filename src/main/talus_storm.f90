@@ -8,7 +8,7 @@ module talus_storm
   use talus_deck_types, only: stage_t, deck_given
   use talus_state, only: state_t
   use talus_session, only: session_t
-  use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
+  use talus_relax, only: relax_t, relax, motion_prepare, relax_balanced, relax_broken
   use talus_coupling, only: coupling_t, coupling_start, coupling_give, coupling_take, &
     coupling_left, coupling_done, coupling_turns
   use talus_soil_law, only: soil_inverted
@@ -43,6 +43,16 @@ contains
     next_line = line_interval
     call record_line(session, 0.0_dp, status)
     call record_snapshot(session, status)
+    if (session%joint .and. session%new_load) then
+      call take_new_load(session, stage, stands, status)
+      if (status_failed(status)) return
+      if (.not. stands) then
+        call lose_balance(session, stage, 0.0_dp)
+        call record_line(session, 0.0_dp, status)
+        call record_snapshot(session, status)
+        return
+      end if
+    end if
     do while (done < stage%duration*(1.0_dp - 1.0e-12_dp))
       step = min(step, stage%duration - done)
       session%last_good = session%state
@@ -54,16 +64,7 @@ contains
           step = max(0.5_dp*step, stage%storm_step_minimum)
           cycle
         end if
-        session%lost = .true.
-        if (.not. session%failed) session%trigger_time = session%last_good%time
-        session%failed = .true.
-        ! The water of the failing step stays: the slide starts out of balance.
-        call take_back(session)
-        if (stage%solve /= 'soil') call move_water(session, stage, step)
-        session%state%time = session%last_good%time + step
-        call feel_supports(session)
-        call progress_say(session%progress, 'equilibrium lost after '// &
-          text_of(session%last_good%time/3600.0_dp)//' h')
+        call lose_balance(session, stage, step)
       end if
       done = done + step
       ended = session%lost .or. is_due(done, stage%duration)
@@ -78,6 +79,47 @@ contains
       if (session%lost .or. status_failed(status)) return
     end do
   end subroutine run_storm
+
+  !> Where water carries load, a load that begins with the stage acts at once, on soil whose water has
+  !> had no time to move: the pore pressure follows the pores. `stands` tells whether the soil finds
+  !> its equilibrium so.
+  subroutine take_new_load(session, stage, stands, status)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    logical, intent(out) :: stands
+    type(status_t), intent(inout) :: status
+
+    session%motion%coupled = .true.
+    call prepare()
+    call find_balance(session, stage, 0.0_dp, stands, status)
+    session%motion%coupled = .false.
+    call prepare()
+
+  contains
+
+    subroutine prepare()
+      call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
+        stage%mass_scaling, stage%step_safety, session%motion, session%work)
+    end subroutine prepare
+  end subroutine take_new_load
+
+  !> Equilibrium is lost in a step, and the soil stays as it was before. The water of the failing step
+  !> stays: the slide starts out of balance.
+  subroutine lose_balance(session, stage, step)
+    type(session_t), intent(inout) :: session
+    type(stage_t), intent(in) :: stage
+    real(dp), intent(in) :: step !! [s]
+
+    session%lost = .true.
+    if (.not. session%failed) session%trigger_time = session%last_good%time
+    session%failed = .true.
+    call take_back(session)
+    if (stage%solve /= 'soil' .and. step > 0.0_dp) call move_water(session, stage, step)
+    session%state%time = session%last_good%time + step
+    call feel_supports(session)
+    call progress_say(session%progress, 'equilibrium lost after '// &
+      text_of(session%last_good%time/3600.0_dp)//' h')
+  end subroutine lose_balance
 
   !> The forces of the state as it is, for the reactions of the next line; those at hand are of the
   !> trial that was taken back. The state is not touched.

@@ -207,6 +207,7 @@ contains
     call compare_2('u_load', one%u_load, other%u_load)
     call compare_1('stiffness', one%stiffness, other%stiffness)
     call compare_1('stiffness_old', one%stiffness_old, other%stiffness_old)
+    call compare_1('settled', one%settled, other%settled)
     call compare_1('stabilising', one%stabilising, other%stabilising)
     call compare_1('stabilising_lost', one%stabilising_lost, other%stabilising_lost)
     call compare_1('volume_work', one%volume_work, other%volume_work)

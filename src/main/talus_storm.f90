@@ -11,7 +11,7 @@ module talus_storm
   use talus_relax, only: relax_t, relax, motion_prepare, relax_balanced, relax_broken
   use talus_coupling, only: coupling_t, coupling_start, coupling_give, coupling_take, &
     coupling_left, coupling_done, coupling_turns
-  use talus_soil_law, only: soil_inverted
+  use talus_soil_law, only: soil_inverted, plasticity_none
   use talus_soil_step, only: soil_force
   use talus_stage_parts, only: take_load, move_water, take_back, is_due, put_off, &
     snapshot_interval, report_broken
@@ -43,7 +43,8 @@ contains
     next_line = line_interval
     call record_line(session, 0.0_dp, status)
     call record_snapshot(session, status)
-    if (session%joint .and. session%new_load) then
+    if (session%joint .and. session%new_load .and. &
+      any(session%ground%law%plasticity /= plasticity_none)) then
       call take_new_load(session, stage, stands, status)
       if (status_failed(status)) return
       if (.not. stands) then
@@ -81,8 +82,9 @@ contains
   end subroutine run_storm
 
   !> Where water carries load, a load that begins with the stage acts at once, on soil whose water has
-  !> had no time to move: the pore pressure follows the pores. `stands` tells whether the soil finds
-  !> its equilibrium so.
+  !> had no time to move: the pore pressure follows the pores. Taken by the soil alone it would leave
+  !> plastic strain or failure that never were; elastic soil comes back, and goes without. `stands`
+  !> tells whether the soil finds its equilibrium so.
   subroutine take_new_load(session, stage, stands, status)
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage

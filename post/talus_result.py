@@ -175,6 +175,18 @@ class Result:
             pass
         return min(times)
 
+    def factor_of_safety(self, stage):
+        """Middle between the largest factor that stood and the least that failed, or None."""
+        try:
+            history = self.history()
+            rows = history["stage"] == stage
+            factor, stands = history["factor"][rows], history["factor_stands"][rows] > 0.5
+        except (ResultError, KeyError):
+            return None
+        if stands.all() or not stands.any():
+            return None
+        return 0.5 * (factor[stands].max() + factor[~stands].min())
+
     def elements(self, corners):
         """Corners (m, corners) of the elements that have this many."""
         first = self.element_offset[:-1][np.diff(self.element_offset) == corners]

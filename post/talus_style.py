@@ -108,11 +108,17 @@ def time_scale(span):
 
 
 def time_text(result, snapshot):
-    """'storm, 12.5 h', or 'slide, 12.5 h + 3.20 s' in a short stage that starts late."""
+    """'storm, 12.5 h', or 'slide, 12.5 h + 3.20 s' in a short stage that starts late.
+
+    A mechanism has a factor of safety in place of a time.
+    """
+    if snapshot.name.startswith("mechanism"):
+        factor = result.factor_of_safety(snapshot.stage)
+        return f"{snapshot.stage}, factor of safety {factor:.4g}" if factor else snapshot.stage
     start = result.stage_start(snapshot)
     last = max(s.time for s in result.snapshots if s.stage == snapshot.stage)
     factor, unit = time_scale(max(last - start, 1e-12))
-    if start > 100 * (last - start) and start > 0.0:
+    if start > 100 * (last - start) > 0.0:
         big, big_unit = time_scale(start)
         text = f"{start * big:.2f} {big_unit} + {(snapshot.time - start) * factor:.2f} {unit}"
     else:

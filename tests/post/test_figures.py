@@ -7,8 +7,10 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import h5py
+import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
@@ -20,7 +22,9 @@ import plot_all  # noqa: E402
 import plot_field  # noqa: E402
 import plot_profiles  # noqa: E402
 import plot_sequence  # noqa: E402
+import plot_water_balance  # noqa: E402
 from plot_water_balance import balance_of  # noqa: E402
+from talus_map import FieldMap, FieldScale, sided  # noqa: E402
 from talus_result import CellShapes, Result, ResultError, along_vertical  # noqa: E402
 from talus_style import display_units, seconds, time_text, use_style  # noqa: E402
 
@@ -123,9 +127,27 @@ class Figures(unittest.TestCase):
         with Result(path) as result:
             self.assertEqual(len(result.numbered()), 3)
             plan = plot_all.figures_of(result, path.parent, 50)
+            self.assertEqual(time_text(result, result.snapshot("mechanism")), "slide")
             options = [o for _, o in plan if "plastic_strain_mechanism" in o[2]]
             self.assertEqual(len(options), 1)
             self.assert_drawn(plot_field.draw(result, plot_field.parser().parse_args(options[0])))
+
+        with h5py.File(path, "a") as file:
+            file["history/factor"] = np.r_[np.ones(10), 1.0, 2.0, 1.5, 1.25, 1.375]
+            file["history/factor_stands"] = np.r_[np.ones(10), 1.0, 0.0, 0.0, 1.0, 0.0]
+        with Result(path) as result:
+            text = time_text(result, result.snapshot("mechanism"))
+            self.assertEqual(text, "slide, factor of safety 1.312")
+
+    def test_no_water_balance_where_no_water_moves(self):
+        path = self.folder / "dry" / "tiny.h5"
+        path.parent.mkdir()
+        write_result(path)
+        with h5py.File(path, "a") as file:
+            file["history/water_in"][...] = 0.0
+        options = plot_water_balance.parser().parse_args([str(path)])
+        with Result(path) as result, self.assertRaisesRegex(ResultError, "no stage moves water"):
+            plot_water_balance.draw(result, options)
 
     def script(self, name, *options):
         """Run one script as a user does."""
@@ -206,6 +228,46 @@ class Reading(unittest.TestCase):
         np.testing.assert_allclose(value, 3.0 * 1.3 - 2.0 * y, atol=1e-13)
         np.testing.assert_allclose([y[0], y[-1]], [0.0, 3 * (0.5 + 0.13)], atol=1e-13)
 
+    def water_table(self, pressure):
+        """Points (n, 2) of the line that a map of this pressure has at zero, and the ends of its bar."""
+        last = self.result.snapshot()
+        figure, axes = plt.subplots()
+        with mock.patch.object(self.result, "field", lambda *_: pressure):
+            scale = FieldScale(self.result, "pore_pressure", [last])
+            field_map = FieldMap(axes, self.result, scale, 0.0)
+            bar = scale.add_bar(figure, field_map.show(last))
+        plt.close(figure)
+        paths = field_map._contour.get_paths() if field_map._contour else []
+        return np.concatenate([np.empty((0, 2)), *(path.vertices for path in paths)]), bar.ax.get_ylim()
+
+    def test_water_table_is_at_zero(self):
+        """On a row of nodes and between two; round-off along a surface is no water table."""
+        x, y = self.result.nodes.T
+        row = np.arange(20) // 5
+        noise = 1e-10 * (-1.0) ** np.arange(20)
+        # Between nodes the line is where a linear pressure is zero.
+        line, ends = self.water_table(-9810.0 * (y - 0.7))
+        np.testing.assert_allclose(line[:, 1], 0.7, atol=1e-12)
+        np.testing.assert_allclose([line[:, 0].min(), line[:, 0].max()], [0.0, 4.0], atol=1e-12)
+        np.testing.assert_allclose(ends, [-9.81 * (2.7 - 0.7), 9.81 * 0.7])
+        # Zero to round-off on the second row of nodes, wet below.
+        line, _ = self.water_table(-9810.0 * (row - 1) + noise)
+        np.testing.assert_allclose(line[:, 1], 0.5 + 0.1 * line[:, 0], atol=1e-12)
+        self.assertEqual(np.ptp(line[:, 0]), 4.0)
+        # A seepage face over wet soil, a wet surface over suction: no line, and no invented colours.
+        line, ends = self.water_table(9810.0 * (3 - row) + noise)
+        self.assertEqual(len(line), 0)
+        np.testing.assert_allclose(ends, [0.0, 29.43], atol=1e-9)
+        line, ends = self.water_table(-9810.0 * (3 - row) + noise)
+        self.assertEqual(len(line), 0)
+        np.testing.assert_allclose(ends, [-29.43, 0.0], atol=1e-9)
+        # A water table that meets a seepage face of zeros ends at the highest of them.
+        pressure = np.where((x == 4.0) & (row < 2), 0.0, 9810.0 * (1.5 - row))
+        line, _ = self.water_table(pressure)
+        self.assertAlmostEqual(line[line[:, 0] == 4.0, 1].min(), 0.9)
+        # Values beyond round-off are as they were.
+        np.testing.assert_array_equal(sided(pressure, self.result.triangles()), pressure)
+
     def test_components_and_sizes(self):
         last = self.result.snapshot()
         push = self.result.field("displacement", last)
@@ -230,6 +292,7 @@ class Reading(unittest.TestCase):
             "water_stored": np.array([9, 9, 8, 7, 8, 8, 8, 8, 8, 8, 10, 11.0]),
         }
         rows, totals = balance_of(history)
+        self.assertEqual(list(balance_of({n: c[:3] for n, c in history.items()})[0]), [])
         self.assertEqual(list(rows), [3, 4, 5, 9, 10, 11])
         self.assertEqual(list(totals["water_in"]), [0, 1, 2, 2, 4, 6])
         difference = totals["water_in"] - totals["water_out"] - totals["water_stored"]

@@ -171,7 +171,7 @@ contains
              'Explicit step of the water over its limit (src/THEORY.md (5.4)); above 1 it '// &
              'may be unstable, see `talus check`.', 'kind=storm|dynamic')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
-             'Displacement in a storm step, or a trial of strength reduction, that counts as '// &
+             'Displacement within storm_step, or in a trial of strength reduction, that counts as '// &
              'failure; absent: in a storm none, else 4 times unit weight, mean depth squared '// &
              'over '// &
              'Young''s modulus.', 'kind=storm|strength_reduction')

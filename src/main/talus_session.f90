@@ -54,6 +54,8 @@ module talus_session
     logical :: stands = .true.              !! outcome of the latest trial of a factor
     type(reduction_t), allocatable :: reduction(:) !! of each stage of strength reduction so far
     logical :: joint = .false.              !! water and soil of the stage agree in each step
+    real(dp), allocatable :: u_window(:,:)  !! displacement when the full step of the storm that its
+                                            !! clock is in began [m], (2,n)
     logical :: new_load = .false.           !! the stage began with other loads than the last one had
     real(dp) :: coupling_error = -1.0_dp    !! greatest coupling_left of all storm steps; -1: none
     real(dp) :: worst_water_error = 0.0_dp  !! over all stages but geostatic

@@ -30,10 +30,12 @@ contains
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     type(status_t), intent(inout) :: status
-    real(dp) :: done, step, next_snapshot, next_line, line_interval
+    real(dp) :: done, step, next_snapshot, next_line, line_interval, next_window
     logical :: stands, ended
 
     done = 0.0_dp
+    next_window = 0.0_dp
+    session%u_window = session%state%u
     session%lost = .false.
     step = stage%storm_step
     next_snapshot = snapshot_interval(session, stage)
@@ -56,6 +58,10 @@ contains
     end if
     do while (done < stage%duration*(1.0_dp - 1.0e-12_dp))
       step = min(step, stage%duration - done)
+      if (is_due(done, next_window)) then
+        session%u_window = session%state%u
+        next_window = done + stage%storm_step
+      end if
       session%last_good = session%state
       call storm_step(session, stage, step, stands, status)
       if (status_failed(status)) return
@@ -186,10 +192,11 @@ contains
     if (deck_given(stage%failure_displacement)) moved_max = stage%failure_displacement
     stable = session%motion%step
     call relax(session%disc, session%ground, session%conditions, session%motion, stage%tolerance, &
-               stage%steps_max, moved_max, travel, session%state, session%work, outcome)
+               stage%steps_max, moved_max, travel, session%state, session%work, outcome, &
+               session%u_window)
     call timer_stop(session%timer, 'soil')
     ! Soil that turns inside out while it looks for equilibrium has found none.
-    stands = outcome%outcome == relax_balanced
+    stands = outcome%outcome == relax_balanced .and. outcome%moved <= moved_max
     if (.not. stands) session%motion%step = stable
     if (outcome%outcome == relax_broken .and. &
         (outcome%failed - 1)/session%disc%n /= soil_inverted) &

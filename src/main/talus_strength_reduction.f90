@@ -7,6 +7,7 @@ module talus_strength_reduction
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
   use talus_state, only: state_t
+  use talus_soil_step, only: motion_t
   use talus_session, only: session_t, reduction_t
   use talus_reduced_ground, only: reduced_ground
   use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
@@ -72,15 +73,16 @@ contains
     type(reduction_t), intent(inout) :: found
     integer, intent(out) :: failed !! 0, or the node whose numbers failed
     type(relax_t) :: outcome
-    real(dp) :: stable
+    type(motion_t) :: motion
 
     failed = 0
-    stable = session%motion%step
+    motion = session%motion
     session%motion%viscous = 0.0_dp
     call relax(session%disc, reduced_ground(session%ground, session%factor), session%conditions, &
                session%motion, stage%tolerance, stage%steps_max, found%moved_max, 0.0_dp, &
                session%state, session%work, outcome)
-    session%motion%step = stable
+    ! Every trial begins alike, so that its outcome is that of its factor alone.
+    session%motion = motion
     found%trials = found%trials + 1
     session%stands = outcome%outcome == relax_balanced
     if (session%stands) then

@@ -135,7 +135,7 @@ contains
   !> needs a shorter step: who takes the motion back restores `motion%step`, too. Driven nodes first
   !> travel as far as their velocity takes them in `travel` seconds, and are then held.
   subroutine relax(disc, ground, conditions, motion, tolerance, steps_max, moved_max, travel, &
-    state, work, outcome)
+    state, work, outcome, from)
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground
     type(conditions_t), intent(in) :: conditions
@@ -147,12 +147,15 @@ contains
     type(state_t), intent(inout) :: state
     type(work_t), intent(inout) :: work
     type(relax_t), intent(out) :: outcome
+    real(dp), intent(in), optional :: from(:,:) !! that displacement counts from [m], (2,n); absent:
+                                                !! from the start
     real(dp), allocatable :: u_start(:,:), force(:,:)
     real(dp) :: spacing, travelled
     integer :: ramp
     logical :: travels
 
     u_start = state%u
+    if (present(from)) u_start = from
     spacing = sqrt(sum(disc%dual%area)/real(disc%n, dp))
     ramp = 0
     if (conditions%driven .and. abs(travel) > 0.0_dp) ramp = min(ramp_steps(disc), steps_max)

@@ -57,9 +57,10 @@ def spread(values):
     return (max(values) - min(values)) / np.mean(values)
 
 
-def band_strain(result):
-    """Greatest plastic strain: it grows without bound where a band has no width of its own."""
-    return float(result.field("plastic_strain").max())
+def band_area(result):
+    """Area [m2] of more than half of the greatest plastic strain: as long as the slide, as wide as its band."""
+    strain = result.field("plastic_strain")
+    return float(result.area[strain > 0.5 * strain.max()].sum())
 
 
 rows = []
@@ -71,7 +72,7 @@ for spacing, run in zip((COARSE, *SPACINGS), (coarse, *two)):
     case.study(f"two levels, {LENGTH} m", run[3], spacing, abs(run[0] / np.mean(times) - 1.0))
 by_block, by_fastest = (spread([run[k] for run in two]) for k in (1, 2))
 what = "time of failure at three spacings, range over mean"
-case.target(what, spread(times), 0.03, "required", asked=True)
+case.target(what, spread(times), 0.03, "required", asked=True, held=(0.0, 0.06))
 what = "mass of the slide at three spacings, range over mean"
 case.target(what, by_block, 0.05, "required", asked=True)
 case.target(
@@ -79,35 +80,41 @@ case.target(
     by_fastest,
     0.05,
     "the other reading",
-    held=(0.0, 0.07),
+    held=(0.0, 0.05),
 )
 case.target(
     "time of failure with ell/3 as well, range over mean",
     spread([coarse[0], *times]),
     0.03,
     "too coarse a spacing",
-    held=(0.0, 0.09),
+    held=(0.0, 0.12),
 )
 case.caution(
-    f"3 % and 5 % are met with ell = {LENGTH} m, an equilibrium to {STRICT[1].split()[-1]} "
-    f"({STRICT[0].split()[-1]} in the demo), the spacings {', '.join(map(str, SPACINGS))} m, and the slide "
-    f"measured by the median of its block ({100 * by_block:.1f} %). Its mass by half of the greatest "
-    f"displacement differs by {100 * by_fastest:.1f} %, the time of failure with {COARSE} m = ell/3 as well "
-    f"by {100 * spread([coarse[0], *times]):.1f} %."
+    f"the runs have ell = {LENGTH} m, an equilibrium to {STRICT[1].split()[-1]} ({STRICT[0].split()[-1]} in "
+    f"the demo) and the spacings {', '.join(map(str, SPACINGS))} m. The mass agrees to {100 * by_block:.1f} % by "
+    f"the median of the block, {100 * by_fastest:.1f} % by half of the greatest displacement; the time of "
+    f"failure to {100 * spread(times):.1f} %, with {COARSE} m = ell/3 as well to "
+    f"{100 * spread([coarse[0], *times]):.1f} %."
 )
 case.table(
     "Time of failure, and the slide by the median of its block and by its fastest node",
     ["series", "spacing [m]", "failure [h]", "by block [m²]", "by fastest [m²]", "median way [m]"],
     sorted(rows, key=lambda row: (-len(row[0]), -row[1])),
 )
-smooth = [band_strain(run[3]) for run in (coarse, two[-1])]
-rough = [band_strain(run[3]) for run in one]
+smooth = [band_area(run[3]) for run in (coarse, two[-1])]
+rough = [band_area(run[3]) for run in one]
 case.remedy(
     "bands as narrow as the mesh; remedy: a smoothing length of 1.5 m",
-    f"one level, 0.5 and 0.3 m: failure after {one[0][0]:.6g} and {one[1][0]:.6g} s, greatest plastic strain "
-    f"{rough[0]:.3g} and {rough[1]:.3g}",
-    f"failure after {coarse[0]:.6g} and {two[-1][0]:.6g} s, {smooth[0]:.3g} and {smooth[-1]:.3g}",
-    spread([run[0] for run in one]) > spread([coarse[0], two[-1][0]]),
+    f"one level, 0.5 and 0.3 m: band of {rough[0]:.3g} and {rough[1]:.3g} m2, failure after {one[0][0]:.6g} "
+    f"and {one[1][0]:.6g} s",
+    f"{smooth[0]:.3g} and {smooth[1]:.3g} m2, failure after {coarse[0]:.6g} and {two[-1][0]:.6g} s",
+    spread(rough) > 2.0 * spread(smooth),
+)
+case.note(
+    "The time of failure falls with the spacing, ever less: "
+    + ", ".join(f"{run[0] / 3600.0:.2f} h" for run in (coarse, *two))
+    + f" at {COARSE}, {', '.join(map(str, SPACINGS))} m. Rain takes some 1 % of the factor of safety in an "
+    "hour, so 3 % of the time is half a per cent of the factor."
 )
 case.note(
     f"With ell/3, the coarsest spacing of a deck, the slope fails after {coarse[0]:.6g} s, "

@@ -73,6 +73,8 @@ contains
     call setup_conditions(session%deck, session%disc, stage%name, session%conditions, status)
     if (status_failed(status)) return
     session%stage_start = session%state%time
+    session%joint = .false.
+    session%new_load = .false.
     associate (state => session%state, disc => session%disc)
       if (session%ground%wet) then
         state%water = water_balance_t()

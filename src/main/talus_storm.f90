@@ -35,7 +35,6 @@ contains
 
     done = 0.0_dp
     next_window = 0.0_dp
-    session%u_window = session%state%u
     session%lost = .false.
     step = stage%storm_step
     next_snapshot = snapshot_interval(session, stage)
@@ -45,6 +44,7 @@ contains
     next_line = line_interval
     call record_line(session, 0.0_dp, status)
     call record_snapshot(session, status)
+    if (stage%solve /= 'seepage') session%u_window = session%state%u
     if (session%joint .and. session%new_load .and. &
       any(session%ground%law%plasticity /= plasticity_none)) then
       call take_new_load(session, stage, stands, status)
@@ -58,7 +58,7 @@ contains
     end if
     do while (done < stage%duration*(1.0_dp - 1.0e-12_dp))
       step = min(step, stage%duration - done)
-      if (is_due(done, next_window)) then
+      if (stage%solve /= 'seepage' .and. is_due(done, next_window)) then
         session%u_window = session%state%u
         next_window = done + stage%storm_step
       end if

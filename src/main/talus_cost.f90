@@ -121,7 +121,8 @@ contains
       + bytes(state%u) + bytes(state%u_zero) + bytes(state%v) + bytes(state%acceleration) &
       + bytes(state%f) + bytes(state%f_drive) + bytes(state%stress) + bytes(state%strain) &
       + bytes(state%history) + bytes(state%stiffness) + bytes(state%stiffness_old) &
-      + bytes(state%settled) + bytes(state%stabilising) + bytes(state%stabilising_lost) + bytes(state%damped) &
+      + bytes(state%settled) + bytes(state%stabilising) + bytes(state%stabilising_lost) &
+      + bytes(state%damped) &
       + bytes(state%mass) + bytes(state%load) + bytes(state%u_load) + bytes(state%jacobian) &
       + bytes(state%content) + bytes(state%pressure) + bytes(state%saturation) &
       + bytes(state%ratio) + bytes(state%potential) + bytes(state%capacity) &

@@ -138,7 +138,8 @@ contains
 
     if (.not. session%soil_moves) return
     state = session%state
-    call soil_force(session%disc, session%ground, session%motion%coupled, state, session%work, failed)
+    call soil_force(session%disc, session%ground, session%motion%coupled, state, session%work, &
+      failed)
   end subroutine feel_supports
 
   !> One step of the storm clock. `stands` tells whether the soil is in equilibrium after it.

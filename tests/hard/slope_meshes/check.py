@@ -113,8 +113,7 @@ case.remedy(
 case.note(
     "The time of failure falls with the spacing, ever less: "
     + ", ".join(f"{run[0] / 3600.0:.2f} h" for run in (coarse, *two))
-    + f" at {COARSE}, {', '.join(map(str, SPACINGS))} m. Rain takes some 1 % of the factor of safety in an "
-    "hour, so 3 % of the time is half a per cent of the factor."
+    + f" at {COARSE}, {', '.join(map(str, SPACINGS))} m."
 )
 case.note(
     f"With ell/3, the coarsest spacing of a deck, the slope fails after {coarse[0]:.6g} s, "

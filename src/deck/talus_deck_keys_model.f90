@@ -94,6 +94,9 @@ contains
              'levels=2')
     call key(t, 'stabilisation', 'real', '', '0.05', '[0, 1]', &
              'Stiffness of the affine-residual stabilisation as a fraction of the soil''s.')
+    call key(t, 'level_stiffness', 'real', '', '0.025', '[0, 1]', &
+             'Stiffness of the difference of both levels of F, as a fraction of Young''s modulus; '// &
+             'none with stabilisation = 0.', 'levels=2')
     call key(t, 'stabilisation_floor', 'real', '', '0.02', '[0, 1]', &
              'Smallest fraction of the stabilisation left in damaged or yielding soil.')
   end subroutine keys_add_smoothing

@@ -40,7 +40,7 @@ module talus_deck_types
     integer :: levels
     real(dp) :: length
     character(:), allocatable :: weights, acts_on
-    real(dp) :: stabilisation, stabilisation_floor
+    real(dp) :: stabilisation, level_stiffness, stabilisation_floor
   end type smoothing_t
 
   type :: soil_t

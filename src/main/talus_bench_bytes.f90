@@ -5,10 +5,11 @@
 !> and p ends of pairs of the stabilisation:
 !>
 !>   strain         n (48 + 52) + 20 m1, and 8 n to divide by the area without a second level
-!>   second level   n 76 + 8 m2
+!>   second level   n 76 + 8 m2, and 72 n to divide by the area with stabilisation
 !>   stress         n (220 + what the physics adds)
-!>   stabilisation  n (172) + 28 p, and 8 n to divide by the area without a second level
-!>   adjoint        n 76 + 8 m2, or 72 n to divide by the area where there is no stabilisation
+!>   stabilisation  n (180) + 28 p, and 72 n between two levels
+!>   adjoint        n 76 + 8 m2, and 32 n with stabilisation; without a second level 72 n to divide by
+!>                  the area where there is no stabilisation
 !>   force          n (68 + 80) + 20 m1, and 16 n each with stabilisation and with damping
 !>   seepage        n 290 + 88 faces, an explicit sub-step; n 100 + 20 m1 more for oblique fluxes
 module talus_bench_bytes
@@ -41,14 +42,18 @@ contains
       if (disc%two_levels .and. .not. disc%damage_only) then
         bytes(phase_second) = 76.0_dp*n + 8.0_dp*real(size(disc%two_level%cell), dp)
         bytes(phase_adjoint) = bytes(phase_second)
+        if (disc%stabilised) then
+          bytes(phase_second) = bytes(phase_second) + 72.0_dp*n
+          bytes(phase_adjoint) = bytes(phase_adjoint) + 32.0_dp*n
+          bytes(phase_stabilise) = 72.0_dp*n
+        end if
       else
         bytes(phase_strain) = bytes(phase_strain) + 8.0_dp*n
-        if (disc%stabilised) bytes(phase_stabilise) = 8.0_dp*n
         if (.not. disc%stabilised) bytes(phase_adjoint) = 72.0_dp*n
       end if
       bytes(phase_stress) = stress_bytes(session)*n
       if (disc%stabilised) then
-        bytes(phase_stabilise) = bytes(phase_stabilise) + 172.0_dp*n &
+        bytes(phase_stabilise) = bytes(phase_stabilise) + 180.0_dp*n &
           + 28.0_dp*real(size(disc%stabilise%node), dp)
         bytes(phase_force) = bytes(phase_force) + 16.0_dp*n
       end if

@@ -8,11 +8,11 @@ module talus_bench_step
   use talus_state, only: state_t
   use talus_session, only: session_t
   use talus_soil_step, only: work_t, motion_t, soil_step
-  use talus_strain, only: strain_first, strain_gradient
+  use talus_strain, only: strain_first, strain_gradient, per_area
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
-  use talus_residual, only: residual_gather
-  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity
+  use talus_residual, only: residual_gather, residual_gather_levels
+  use talus_force, only: force_unbalanced, motion_position, motion_velocity
   use talus_seepage, only: seepage_advance
   use talus_audit, only: energies_t, audit_energies
   use talus_timer, only: timer_now
@@ -43,6 +43,7 @@ contains
       call strain_first(disc%scni, state%u, work%y)
       call mark(seconds(phase_strain), began)
       call smooth_gradient(disc%two_level, work%y, work%h)
+      if (disc%stabilised) call per_area(disc%dual%area, work%y)
       call mark(seconds(phase_second), began)
     else
       call strain_gradient(disc%scni, disc%dual%area, state%u, work%h)
@@ -51,20 +52,21 @@ contains
     call stress_update(disc, ground, motion%coupled, work%h, work%drive, state, work%q, failed)
     call mark(seconds(phase_stress), began)
     if (disc%two_levels) then
-      if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
-        state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
+      if (disc%stabilised) call residual_gather_levels(disc%stabilise, disc%dual%area, state%u, &
+        work%y, state%stiffness, state%stiffness_old, work%h, work%q, work%stabilising, &
+        state%stabilising, state%stabilising_lost)
       call mark(seconds(phase_stabilise), began)
-      call smooth_stress(disc%two_level, work%q, work%y)
+      call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
       call mark(seconds(phase_adjoint), began)
       call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
     else
       if (disc%stabilised) then
-        call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
+        call residual_gather(disc%stabilise, disc%dual%area, state%u, work%h, state%stiffness, &
           state%stiffness_old, work%q, work%stabilising, state%stabilising, &
-          state%stabilising_lost, disc%dual%area)
+          state%stabilising_lost)
         call mark(seconds(phase_stabilise), began)
       else
-        call force_one_level(disc%dual%area, work%q)
+        call per_area(disc%dual%area, work%q)
         call mark(seconds(phase_adjoint), began)
       end if
       call force_unbalanced(disc%scni, work%q, state%load, work%stabilising, work%force)

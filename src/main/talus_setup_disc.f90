@@ -89,7 +89,8 @@ contains
     if (.not. disc%stabilised) return
     modulus = ground%law(disc%soil)%elastic%youngs_modulus
     call stabilise_build(disc%stabilise, disc%mesh%x, disc%dual, modulus, &
-                         deck%smoothing%stabilisation)
+                         deck%smoothing%stabilisation, disc%two_levels .and. .not. disc%damage_only, &
+                         deck%smoothing%level_stiffness)
   end subroutine build_smoothing
 
   !> Nodes and the grid they come with.

@@ -7,24 +7,10 @@ module talus_force
   use talus_inertia, only: inertia_gather
   implicit none
   private
-  public :: force_one_level, force_unbalanced, motion_position, motion_velocity
+  public :: force_unbalanced, motion_position, motion_velocity
   public :: motion_damp, motion_velocity_consistent
 
 contains
-
-  !> First Piola stress of the first level alone, without stabilisation, which would divide.
-  subroutine force_one_level(area, q)
-    real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
-    real(dp), contiguous, intent(inout) :: q(:,:) !! area times Piola stress in, Piola stress out
-                                                  !! [Pa], (4,n)
-    integer :: l
-
-    !$omp do schedule(static)
-    do l = 1, size(area)
-      q(:, l) = q(:, l)/area(l)
-    end do
-    !$omp end do
-  end subroutine force_one_level
 
   !> Out-of-balance force: load plus stabilisation minus internal force.
   subroutine force_unbalanced(scni, r, load, stabilising, force)

@@ -1,48 +1,71 @@
 ! SPDX-License-Identifier: MIT
 !> The affine-residual stabilisation at work (src/THEORY.md (4.9)-(4.11)): forces on both nodes of a
-!> pair, and the matching part of their first Piola stress, from one energy.
+!> pair, and the matching part of their first Piola stress, from one energy; with two levels, the stress
+!> between them, too.
 module talus_residual
   use talus_kinds, only: dp
   use talus_stabilise, only: stabilise_t
   implicit none
   private
-  public :: residual_gather
+  public :: residual_gather, residual_gather_levels
 
 contains
 
-  !> Add the pairs' part to area times Piola stress, and give their nodal force. The stiffness of a
-  !> pair follows the softer of its nodes, so that a shear band is not bridged from its sides.
-  !> `energy` comes in as that of one step ago. With `area`, the sum is divided by it.
-  subroutine residual_gather(stabilise, u, h, scale, before, q, force, energy, loss, area)
+  !> With one level: add the pairs' part to area times Piola stress and divide the sum by the area, and
+  !> give the pairs' nodal force. The stiffness of a pair follows the softer of its nodes, so that a
+  !> shear band is not bridged from its sides. `energy` comes in as that of one step ago.
+  subroutine residual_gather(stabilise, area, u, h, scale, before, q, force, energy, loss)
     type(stabilise_t), intent(in) :: stabilise
+    real(dp), contiguous, intent(in) :: area(:)     !! cell areas [m2], (n)
     real(dp), contiguous, intent(in) :: u(:,:)      !! displacement [m], (2,n)
     real(dp), contiguous, intent(in) :: h(:,:)      !! displacement gradient, (4,n)
     real(dp), contiguous, intent(in) :: scale(:)    !! stiffness left at each node, 0..1, (n)
     real(dp), contiguous, intent(in) :: before(:)   !! the same one step ago, (n)
-    real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress [N m/m], (4,n)
+    real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress in [N m/m], Piola
+                                                    !! stress out [Pa], (4,n)
     real(dp), contiguous, intent(inout) :: force(:,:) !! force on the nodes [N/m], (2,n)
     real(dp), contiguous, intent(inout) :: energy(:) !! half the energy of a node's pairs [J/m], (n)
     real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
-    real(dp), contiguous, intent(in), optional :: area(:) !! cell areas, where there is one level
-                                                          !! [m2]
+    real(dp) :: none(4,0)
 
-    if (present(area)) then
-      call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
-                  stabilise%stiffness, u, h, scale, before, .true., area, q, force, energy, loss)
-    else
-      call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
-                  stabilise%stiffness, u, h, scale, before, .false., scale, q, force, energy, loss)
-    end if
+    call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
+                stabilise%stiffness, area, u, h, scale, before, .false., stabilise%level, none, q, &
+                force, energy, loss)
   end subroutine residual_gather
 
+  !> With two levels: the pairs feel the first. Give their nodal force, take the stress between the
+  !> levels from area times Piola stress of the second, and give that which the first gets.
+  subroutine residual_gather_levels(stabilise, area, u, first, scale, before, h, q, force, energy, &
+    loss)
+    type(stabilise_t), intent(in) :: stabilise
+    real(dp), contiguous, intent(in) :: area(:)     !! cell areas [m2], (n)
+    real(dp), contiguous, intent(in) :: u(:,:)      !! displacement [m], (2,n)
+    real(dp), contiguous, intent(in) :: first(:,:)  !! displacement gradient of the first level, (4,n)
+    real(dp), contiguous, intent(in) :: scale(:)    !! stiffness left at each node, 0..1, (n)
+    real(dp), contiguous, intent(in) :: before(:)   !! the same one step ago, (n)
+    real(dp), contiguous, intent(inout) :: h(:,:)   !! gradient of the second level in, Piola stress of
+                                                    !! the first out [Pa], (4,n)
+    real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress of the second level
+                                                    !! [N m/m], (4,n)
+    real(dp), contiguous, intent(inout) :: force(:,:) !! force on the nodes [N/m], (2,n)
+    real(dp), contiguous, intent(inout) :: energy(:) !! half the energy of a node's pairs, and that
+                                                     !! between the levels [J/m], (n)
+    real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
+
+    call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
+                stabilise%stiffness, area, u, first, scale, before, .true., stabilise%level, h, q, &
+                force, energy, loss)
+  end subroutine residual_gather_levels
+
   !> The gather on plain arrays.
-  subroutine gather(n, offset, node, reach, stiffness, u, h, scale, before, divided, area, q, &
-    force, energy, loss)
+  subroutine gather(n, offset, node, reach, stiffness, area, u, h, scale, before, levels, level, &
+    second, q, force, energy, loss)
     integer, intent(in) :: n, offset(*), node(*)
-    real(dp), intent(in) :: reach(2,*), stiffness(*), u(2,*), h(4,*), scale(*), before(*), area(*)
-    logical, intent(in) :: divided !! by the area, which else is not read
-    real(dp), intent(inout) :: q(4,*), force(2,*), energy(*), loss(*)
-    real(dp), dimension(2) :: r, f, p_1, p_2, own, h_1, h_2, row_1, row_2, half
+    real(dp), intent(in) :: reach(2,*), stiffness(*), area(*), u(2,*), h(4,*), scale(*), before(*)
+    logical, intent(in) :: levels !! there are two; else `level` and `second` are not read
+    real(dp), intent(in) :: level(*)
+    real(dp), intent(inout) :: second(4,*), q(4,*), force(2,*), energy(*), loss(*)
+    real(dp), dimension(2) :: r, f, p_1, p_2, own, h_1, h_2, row_1, row_2, half, apart_1, apart_2
     real(dp) :: kappa, lost, rr, total, gone, whole, scale_own, before_own
     integer :: i, j, k
 
@@ -76,12 +99,22 @@ contains
         p_2 = p_2 + r(2)*half
       end do
       force(:, i) = f
-      if (divided) then
+      if (levels) then
+        apart_1 = h_1 - second(1:2, i)
+        apart_2 = h_2 - second(3:4, i)
+        kappa = level(i)*scale_own
+        rr = 2.0_dp*(sum(apart_1*apart_1) + sum(apart_2*apart_2))
+        total = total + kappa*rr
+        gone = gone + (level(i)*before_own - kappa)*rr
+        apart_1 = kappa*apart_1
+        apart_2 = kappa*apart_2
+        q(1:2, i) = q(1:2, i) - apart_1
+        q(3:4, i) = q(3:4, i) - apart_2
+        second(1:2, i) = (apart_1 - p_1)/area(i)
+        second(3:4, i) = (apart_2 - p_2)/area(i)
+      else
         q(1:2, i) = (q(1:2, i) - p_1)/area(i)
         q(3:4, i) = (q(3:4, i) - p_2)/area(i)
-      else
-        q(1:2, i) = q(1:2, i) - p_1
-        q(3:4, i) = q(3:4, i) - p_2
       end if
       ! Forces at both ends of the step work, so what softening takes is 1/2 lost r_old.r_new. All
       ! residuals of a node are taken to change by one ratio, the root of that of its energies.

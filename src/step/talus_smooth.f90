@@ -19,29 +19,43 @@ contains
     if (allocated(two_level%plain)) then
       call gather_plain(two_level%offset, two_level%cell, two_level%plain, y, h)
     else
-      call gather(size(h, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, y, h)
+      call gather(size(h, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, y, &
+                  .false., y, h)
     end if
   end subroutine smooth_gradient
 
-  !> First Piola stress smoothed by the adjoint.
-  subroutine smooth_stress(two_level, q, r)
+  !> First Piola stress smoothed by the adjoint, and that of the first level added.
+  subroutine smooth_stress(two_level, q, stabilised, first, r)
     type(two_level_t), intent(in) :: two_level
-    real(dp), contiguous, intent(in) :: q(:,:)    !! area times first Piola stress [N m/m], (4,n)
-    real(dp), contiguous, intent(inout) :: r(:,:) !! smoothed first Piola stress [Pa], (4,n)
+    real(dp), contiguous, intent(in) :: q(:,:)     !! area times first Piola stress [N m/m], (4,n)
+    logical, intent(in) :: stabilised              !! the first level has a stress, which else is not
+                                                   !! read
+    real(dp), contiguous, intent(in) :: first(:,:) !! first Piola stress of the first level [Pa], (4,n)
+    real(dp), contiguous, intent(inout) :: r(:,:)  !! sum of both [Pa], (4,n)
+    integer :: l
 
     if (allocated(two_level%plain)) then
       call gather_plain(two_level%offset, two_level%cell, two_level%adjoint, q, r)
+      if (.not. stabilised) return
+      !$omp do schedule(static)
+      do l = 1, size(r, 2)
+        r(:, l) = r(:, l) + first(:, l)
+      end do
+      !$omp end do
     else
-      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, q, r)
+      call gather(size(r, 2), two_level%offset, two_level%cell, two_level%s, two_level%rest, q, &
+                  stabilised, first, r)
     end if
   end subroutine smooth_stress
 
   !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their
   !> own, so that an addition need not wait for the one before.
-  subroutine gather(n, offset, cell, s, rest, from, to)
+  subroutine gather(n, offset, cell, s, rest, from, added, more, to)
     integer, intent(in) :: n, offset(*), cell(*)
     real(sp), intent(in) :: s(*)
     real(dp), intent(in) :: rest(*), from(4,*)
+    logical, intent(in) :: added !! to the sums: `more`, which else is not read
+    real(dp), intent(in) :: more(4,*)
     real(dp), intent(inout) :: to(4,*)
     real(dp) :: even(4), odd(4)
     integer :: l, k, last
@@ -50,6 +64,7 @@ contains
     do l = 1, n
       even = rest(l)*from(:, l)
       odd = 0.0_dp
+      if (added) odd = more(:, l)
       last = offset(l+1) - 1
       !GCC$ unroll 2
       do k = offset(l), last - 1, 2

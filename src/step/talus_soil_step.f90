@@ -4,8 +4,8 @@
 !>   u_n+1   = u_n + dt v_n+1/2                          motion_position
 !>   F_n+1   = 1 + G u_n+1, then W F                     strain_gradient, or _first, smooth_gradient
 !>   sigma   = law(F_n, F_n+1, suction), P = J sigma F^-T  stress_update
-!>   r       = affine residual, its force and its P      residual_gather
-!>   R       = W^T P                                     smooth_stress
+!>   r       = affine residual, its force and its P      residual_gather, or _levels
+!>   R       = W^T P, and P of the first level           smooth_stress
 !>   f       = load + stabilisation - G^T R              force_unbalanced
 !>   v_n+3/2 = v_n+1/2 + dt M^-1 f                       motion_velocity
 module talus_soil_step
@@ -13,20 +13,22 @@ module talus_soil_step
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_strain, only: strain_first, strain_one_level, strain_gradient
+  use talus_strain, only: strain_first, strain_one_level, strain_gradient, per_area
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
-  use talus_residual, only: residual_gather
-  use talus_force, only: force_one_level, force_unbalanced, motion_position, motion_velocity, &
-    motion_damp, motion_velocity_consistent
+  use talus_residual, only: residual_gather, residual_gather_levels
+  use talus_force, only: force_unbalanced, motion_position, motion_velocity, motion_damp, &
+    motion_velocity_consistent
   implicit none
   private
   public :: work_t, motion_t, work_allocate, soil_step, soil_force, soil_leave_rest
+  public :: gradients, unbalanced
 
   !> Fields that live within a step only.
   type :: work_t
-    real(dp), allocatable :: y(:,:)           !! area times first-level gradient, then R, (4,n)
-    real(dp), allocatable :: h(:,:)           !! displacement gradient that the stress sees, (4,n)
+    real(dp), allocatable :: y(:,:)           !! first-level gradient, or area times it, then R, (4,n)
+    real(dp), allocatable :: h(:,:)           !! displacement gradient that the stress sees, then with
+                                              !! two levels Piola stress of the first [Pa], (4,n)
     real(dp), allocatable :: drive(:,:)       !! the one that drives damage alone, (4,n) or (4,0)
     real(dp), allocatable :: q(:,:)           !! area times first Piola stress [N m/m], (4,n)
     real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n) or (2,0)
@@ -158,33 +160,63 @@ contains
     type(state_t), intent(inout) :: state
     type(work_t), intent(inout) :: work
     integer, intent(inout) :: failed
+    real(dp) :: none(0)
 
-    if (.not. disc%two_levels) then
-      call strain_gradient(disc%scni, disc%dual%area, state%u, work%h)
-    else
-      call strain_first(disc%scni, state%u, work%y)
-      if (disc%damage_only) then
-        call smooth_gradient(disc%two_level, work%y, work%drive)
-        call strain_one_level(disc%dual%area, work%y, work%h)
-      else
-        call smooth_gradient(disc%two_level, work%y, work%h)
-      end if
-    end if
+    call gradients(disc, state%u, work)
     call stress_update(disc, ground, coupled, work%h, work%drive, state, work%q, failed)
-    if (disc%two_levels .and. .not. disc%damage_only) then
-      if (disc%stabilised) call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
-        state%stiffness_old, work%q, work%stabilising, state%stabilising, state%stabilising_lost)
-      call smooth_stress(disc%two_level, work%q, work%y)
-      call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
+    if (disc%stabilised) then
+      call unbalanced(disc, state%u, state%stiffness, state%stiffness_old, state%load, work, &
+                      state%stabilising, state%stabilising_lost)
     else
-      if (disc%stabilised) then
-        call residual_gather(disc%stabilise, state%u, work%h, state%stiffness, &
-          state%stiffness_old, work%q, work%stabilising, state%stabilising, &
-          state%stabilising_lost, disc%dual%area)
-      else
-        call force_one_level(disc%dual%area, work%q)
-      end if
-      call force_unbalanced(disc%scni, work%q, state%load, work%stabilising, work%force)
+      call unbalanced(disc, state%u, none, none, state%load, work, none, none)
     end if
   end subroutine forces
+
+  !> Displacement gradients of all levels; within a parallel region.
+  subroutine gradients(disc, u, work)
+    type(disc_t), intent(in) :: disc
+    real(dp), contiguous, intent(in) :: u(:,:) !! displacement [m], (2,n)
+    type(work_t), intent(inout) :: work        !! y, h and drive come out
+
+    if (.not. disc%two_levels) then
+      call strain_gradient(disc%scni, disc%dual%area, u, work%h)
+      return
+    end if
+    call strain_first(disc%scni, u, work%y)
+    if (disc%damage_only) then
+      call smooth_gradient(disc%two_level, work%y, work%drive)
+      call strain_one_level(disc%dual%area, work%y, work%h)
+    else
+      call smooth_gradient(disc%two_level, work%y, work%h)
+      if (disc%stabilised) call per_area(disc%dual%area, work%y)
+    end if
+  end subroutine gradients
+
+  !> Out-of-balance force from the gradients and the stress; within a parallel region.
+  subroutine unbalanced(disc, u, scale, before, load, work, energy, loss)
+    type(disc_t), intent(in) :: disc
+    real(dp), contiguous, intent(in) :: u(:,:)       !! displacement [m], (2,n)
+    ! What residual_gather says of these; without stabilisation none is read.
+    real(dp), contiguous, intent(in) :: scale(:), before(:)
+    real(dp), contiguous, intent(in) :: load(:,:)    !! weight and tractions [N/m], (2,n)
+    type(work_t), intent(inout) :: work              !! from y, h and q to force
+    real(dp), contiguous, intent(inout) :: energy(:), loss(:)
+
+    associate (area => disc%dual%area)
+      if (disc%two_levels .and. .not. disc%damage_only) then
+        if (disc%stabilised) call residual_gather_levels(disc%stabilise, area, u, work%y, scale, &
+          before, work%h, work%q, work%stabilising, energy, loss)
+        call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
+        call force_unbalanced(disc%scni, work%y, load, work%stabilising, work%force)
+      else
+        if (disc%stabilised) then
+          call residual_gather(disc%stabilise, area, u, work%h, scale, before, work%q, &
+            work%stabilising, energy, loss)
+        else
+          call per_area(area, work%q)
+        end if
+        call force_unbalanced(disc%scni, work%q, load, work%stabilising, work%force)
+      end if
+    end associate
+  end subroutine unbalanced
 end module talus_soil_step

@@ -7,7 +7,7 @@ module talus_strain
   use talus_scni, only: scni_t
   implicit none
   private
-  public :: strain_first, strain_one_level, strain_gradient
+  public :: strain_first, strain_one_level, strain_gradient, per_area
 
 contains
 
@@ -73,4 +73,17 @@ contains
     end do
     !$omp end do
   end subroutine strain_one_level
+
+  !> Divide by the cell areas: a gradient or a stress from its product with the area.
+  subroutine per_area(area, product)
+    real(dp), contiguous, intent(in) :: area(:)         !! [m2], (n)
+    real(dp), contiguous, intent(inout) :: product(:,:) !! (4,n)
+    integer :: l
+
+    !$omp do schedule(static)
+    do l = 1, size(area)
+      product(:, l) = product(:, l)/area(l)
+    end do
+    !$omp end do
+  end subroutine per_area
 end module talus_strain

@@ -10,14 +10,10 @@ module talus_time_step
   use talus_sum, only: sum_products
   use talus_elastic, only: elastic_piola_tangent
   use talus_soil_law, only: stress_bishop, bishop_factor
-  use talus_strain, only: strain_first, strain_gradient
-  use talus_smooth, only: smooth_gradient, smooth_stress
-  use talus_residual, only: residual_gather
   use talus_inertia, only: inertia_apply
   use talus_rayleigh, only: search_t, search_begin, search_turn, direction_start, &
     direction_residual
-  use talus_force, only: force_one_level, force_unbalanced
-  use talus_soil_step, only: work_t, motion_t
+  use talus_soil_step, only: work_t, motion_t, gradients, unbalanced
   implicit none
   private
   public :: time_step_stable, stiffness_apply, water_bulk_modulus
@@ -119,23 +115,15 @@ contains
     real(dp), contiguous, intent(in) :: d(:,:)       !! displacement [m], (2,n)
     type(work_t), intent(inout) :: work
     real(dp), allocatable :: energy(:), loss(:), one(:)
-    logical :: two_levels
     integer :: i
 
-    two_levels = disc%two_levels .and. .not. disc%damage_only
     allocate (energy(disc%n), loss(disc%n), one(disc%n))
     energy = 0.0_dp
     loss = 0.0_dp
     one = 1.0_dp
     !$omp parallel default(none) shared(disc, ground, state, bulk, nothing, d, work, energy, loss) &
-    !$omp shared(one, two_levels) &
-    !$omp private(i)
-    if (two_levels) then
-      call strain_first(disc%scni, d, work%y)
-      call smooth_gradient(disc%two_level, work%y, work%h)
-    else
-      call strain_gradient(disc%scni, disc%dual%area, d, work%h)
-    end if
+    !$omp shared(one) private(i)
+    call gradients(disc, d, work)
     !$omp do schedule(static)
     do i = 1, disc%n
       call elastic_piola_tangent(ground%law(disc%soil(i))%elastic, bulk(i), state%f(:, i), &
@@ -143,20 +131,7 @@ contains
       work%q(:, i) = disc%dual%area(i)*work%q(:, i)
     end do
     !$omp end do
-    if (two_levels) then
-      if (disc%stabilised) call residual_gather(disc%stabilise, d, work%h, one, one, work%q, &
-        work%stabilising, energy, loss)
-      call smooth_stress(disc%two_level, work%q, work%y)
-      call force_unbalanced(disc%scni, work%y, nothing, work%stabilising, work%force)
-    else
-      if (disc%stabilised) then
-        call residual_gather(disc%stabilise, d, work%h, one, one, work%q, work%stabilising, &
-          energy, loss, disc%dual%area)
-      else
-        call force_one_level(disc%dual%area, work%q)
-      end if
-      call force_unbalanced(disc%scni, work%q, nothing, work%stabilising, work%force)
-    end if
+    call unbalanced(disc, d, one, one, nothing, work, energy, loss)
     !$omp do schedule(static)
     do i = 1, disc%n
       work%force(:, i) = -work%force(:, i)

@@ -36,6 +36,7 @@ module models
     integer :: weights = weights_symmetric
     logical :: damage_only = .false.
     real(dp) :: stabilisation = 0.05_dp     !! 0 for none
+    real(dp) :: level_stiffness = 0.025_dp  !! between the levels
     real(dp) :: support = 1.6_dp            !! kernel support radius over spacing
     logical :: consistent = .false.         !! mass is consistent with the strain
     real(dp) :: layer = huge(1.0_dp)        !! soil 2 is above this elevation [m]
@@ -80,7 +81,7 @@ contains
     disc%floor = 0.02_dp
     modulus = ground%law(disc%soil)%elastic%youngs_modulus
     if (disc%stabilised) call stabilise_build(disc%stabilise, disc%mesh%x, disc%dual, modulus, &
-                                              square%stabilisation)
+      square%stabilisation, disc%two_levels .and. .not. disc%damage_only, square%level_stiffness)
     if (status_failed(status)) error stop 'square_disc failed'
   end subroutine square_disc
 

@@ -46,7 +46,7 @@ for what, name, replace, held in (
         ("name = 'slide'", "name = 'slide'\n  step_safety = 0.45"),
         0.01,
     ),
-    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.28),
+    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.08),
 ):
     other = slope(name, replace)
     curves[what] = other[3]
@@ -67,12 +67,31 @@ case.picture(
         for what, h in ((what, result.history()) for what, result in curves.items())
     },
 )
+# How the slide hangs on the stabilisation, to tell trend from scatter.
+rows = [(0.05, demo, largest), (0.1, curves["twice the stabilisation"], other[0])]
+for alpha in (0.025, 0.035, 0.04, 0.06, 0.07, 0.085):
+    found = slope(f"alpha_{alpha}", ("length = 1.1", f"length = 1.1\n  stabilisation = {alpha}"))
+    rows.append((alpha, found[3], found[0]))
+rows.sort(key=lambda row: row[0])
+case.table(
+    "The slide over the stabilisation",
+    ["stabilisation", "failure [h]", "largest displacement [m]"],
+    [[f"{a:g}", f"{float(r.summary['trigger_time']) / 3600.0:.3f}", f"{u:.4g}"] for a, r, u in rows],
+)
+slope_of = np.polyfit([np.log2(row[0]) for row in rows], [row[2] / largest for row in rows], 1)
+scatter = max(abs(row[2] / largest - np.polyval(slope_of, np.log2(row[0]))) for row in rows)
+# What ties the levels is a property of the model, as their length is; what it is worth is shown.
+tied = slope("twice_level", ("length = 1.1", "length = 1.1\n  level_stiffness = 0.05"))
+case.study("twice the level stiffness", tied[3], 0.35, abs(tied[0] / largest - 1.0))
+case.check("twice the level stiffness: change of the greatest displacement", abs(tied[0] / largest - 1), 0.3, "held")
 # Without stabilisation the slope does not slide as a mass: single nodes fly off.
-_, _, _, bare = slope("no_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.004"))
+_, _, _, bare = slope(
+    "no_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.004\n  level_stiffness = 0.0")
+)
 flown = np.linalg.norm(bare.field("displacement"), axis=1)
 case.remedy(
-    "nodal modes of a sliding mass; remedy: stabilisation = 0.05",
-    f"with 0.004 of the soil's stiffness single nodes fly off, up to {flown.max():.3g} m, "
+    "nodal modes of a sliding mass; remedy: stabilisation = 0.05 and level_stiffness = 0.025",
+    f"with 0.004 and 0 of the soil's stiffness single nodes fly off, up to {flown.max():.3g} m, "
     f"{flown.max() / np.percentile(flown, 95):.3g} times what 95 % of the nodes stay below",
     f"largest displacement {largest:.3g} m",
     flown.max() > 5.0 * largest,
@@ -85,39 +104,34 @@ SLIDE = (
 FACTOR = (SLIDE, "name = 'factor'\n  kind = 'strength_reduction'\n  factor_tolerance = 0.002")
 
 
-def factor(smoothing, stabilisation):
+def factor(name, smoothing):
     """Factor of safety after 16 h of rain."""
-    replace = [
-        ("levels = 2\n  length = 1.1", f"{smoothing}\n  stabilisation = {stabilisation}"),
-        STORM,
-        FACTOR,
-    ]
-    summary = case.run("case.nml", replace, name=f"factor_{smoothing[9]}_{stabilisation}").summary
-    return float(summary["factor_of_safety"])
+    replace = [("levels = 2\n  length = 1.1", smoothing), STORM, FACTOR]
+    return float(case.run("case.nml", replace, name=f"factor_{name}").summary["factor_of_safety"])
 
 
+TWO = "levels = 2\n  length = 1.1\n  "
 factors = {
-    level: [factor(smoothing, alpha) for alpha in (0.05, 0.1)]
-    for level, smoothing in (("one level", "levels = 1"), ("two levels", "levels = 2\n  length = 1.1"))
+    "one level": [factor(f"one_{alpha}", f"levels = 1\n  stabilisation = {alpha}") for alpha in (0.05, 0.1)],
+    "two levels": [factor(f"two_{alpha}", f"{TWO}stabilisation = {alpha}") for alpha in (0.05, 0.1)],
 }
 for level, (once, twice) in factors.items():
-    case.check(
-        f"factor of safety at 16 h, {level}: change by twice the stabilisation",
-        twice / once - 1,
-        0.015,
-        "held",
-    )
+    what = f"factor of safety at 16 h, {level}: change by twice the stabilisation"
+    case.check(what, twice / once - 1, 0.006, "held")
+tied_factor = factor("twice_level", f"{TWO}level_stiffness = 0.05")
+what = "factor of safety at 16 h, two levels: change by twice the level stiffness"
+case.check(what, tied_factor / factors["two levels"][0] - 1, 0.015, "held")
 case.note(
-    "Twice the stabilisation misses. What it adds is a little strength: the factor of safety after 16 h goes "
-    "from "
+    "Twice the stabilisation adds a little strength: the factor of safety after 16 h goes from "
     + " and ".join(f"{a:.4g} to {b:.4g} at {level}" for level, (a, b) in factors.items())
-    + ". But rain takes only some 1 % of this slope's factor in an hour, and the slide is driven by what the "
-    "soil lacks of balance, a few per cent of the weight: the slope fails later and slides less far. F, "
-    "smoothed over ell, differs from the motion of the nodes, most of all in a shear band, and only the "
-    "stabilisation resists there. Tried: a tolerance of 1e-5 and storm steps of 900 s move the times of "
-    "failure of both by under 3 % and leave their distance of 10 %. A square of beta (4.11), residuals "
-    "of F smoothed less and weights with a cusp at the centre all left a good part of it. A residual of the "
-    "F of the first level brings the times of failure to within 4 %, but lets nodes of the sliding mass fly "
-    "off at 0.05 (17 m), and the free square's frequencies fall by 10 % at ell = 3h."
+    + ". The slide begins close to equilibrium, so that little decides how far it goes: rain takes only some 1 % "
+    "of this slope's factor in an hour, and equilibria of the storm are exact to 1e-4. "
+    f"Over stabilisations from {rows[0][0]:g} to {rows[-1][0]:g} "
+    f"the slide changes by {100 * slope_of[0]:.1f} % for each doubling, with single runs up to "
+    f"{100 * scatter:.1f} % off that line."
+)
+case.note(
+    f"Twice the stiffness that ties the levels gives a factor of {tied_factor:.4g} and a slide of "
+    f"{tied[0]:.3g} m. It is chosen with the smoothing length, and does not change with the nodes."
 )
 sys.exit(case.verdict())

@@ -85,6 +85,8 @@ contains
       end if
       call summary_set(summary, 'stabilisation', &
                        merge(deck%smoothing%stabilisation, 0.0_dp, disc%stabilised))
+      if (disc%two_levels .and. disc%stabilised .and. .not. disc%damage_only) &
+        call summary_set(summary, 'level_stiffness', deck%smoothing%level_stiffness)
       if (.not. session%soil_moves) return
       do i = 1, size(deck%soil)
         if (session%ground%law(i)%plasticity == plasticity_none) cycle

@@ -13,7 +13,7 @@ module talus_soil_step
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_strain, only: strain_first, strain_one_level, strain_gradient, per_area
+  use talus_strain, only: strain_first, strain_gradient, per_area
   use talus_smooth, only: smooth_gradient, smooth_stress
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather, residual_gather_levels
@@ -180,13 +180,12 @@ contains
 
     if (.not. disc%two_levels) then
       call strain_gradient(disc%scni, disc%dual%area, u, work%h)
-      return
-    end if
-    call strain_first(disc%scni, u, work%y)
-    if (disc%damage_only) then
-      call smooth_gradient(disc%two_level, work%y, work%drive)
-      call strain_one_level(disc%dual%area, work%y, work%h)
+    else if (disc%damage_only) then
+      call strain_first(disc%scni, u, work%h)
+      call smooth_gradient(disc%two_level, work%h, work%drive)
+      call per_area(disc%dual%area, work%h)
     else
+      call strain_first(disc%scni, u, work%y)
       call smooth_gradient(disc%two_level, work%y, work%h)
       if (disc%stabilised) call per_area(disc%dual%area, work%y)
     end if

@@ -7,7 +7,7 @@ module talus_strain
   use talus_scni, only: scni_t
   implicit none
   private
-  public :: strain_first, strain_one_level, strain_gradient, per_area
+  public :: strain_first, strain_gradient, per_area
 
 contains
 
@@ -20,7 +20,7 @@ contains
     call gather(size(y, 2), scni%cell_offset, scni%node, scni%b, u, .false., u, y)
   end subroutine strain_first
 
-  !> Gradient of the first level alone: strain_first and strain_one_level in one pass.
+  !> Gradient of the first level alone: strain_first and per_area in one pass.
   subroutine strain_gradient(scni, area, u, h)
     type(scni_t), intent(in) :: scni
     real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
@@ -59,20 +59,6 @@ contains
     end do
     !$omp end do
   end subroutine gather
-
-  !> Gradient of the first level, where its product with the area serves something else too.
-  subroutine strain_one_level(area, y, h)
-    real(dp), contiguous, intent(in) :: area(:)   !! cell areas [m2], (n)
-    real(dp), contiguous, intent(in) :: y(:,:)    !! area times gradient [m2], (4,n)
-    real(dp), contiguous, intent(inout) :: h(:,:) !! displacement gradient F - 1, (4,n)
-    integer :: l
-
-    !$omp do schedule(static)
-    do l = 1, size(area)
-      h(:, l) = y(:, l)/area(l)
-    end do
-    !$omp end do
-  end subroutine strain_one_level
 
   !> Divide by the cell areas: a gradient or a stress from its product with the area.
   subroutine per_area(area, product)

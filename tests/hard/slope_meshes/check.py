@@ -2,12 +2,15 @@
 """The slope of the demo, input/rain_slope, at three spacings with one smoothing length.
 
 The time of failure must agree within 3 %, and within 5 % the mass of the slide: what has moved by more than
-half as far as the middle of its block, the median of all that moved, when the soil has come to rest. (The
-greatest displacement is that of single nodes at the toe, and grows as nodes get finer.) In the storm,
+half as far as the middle of its block, the median of all that moved, when the soil has come to rest; or, read
+otherwise, what has moved by more than a metre. (Half of the greatest displacement, that of single nodes at the
+toe, is no good measure: it is about as far as the middle of the block goes, and so cuts through it. It is in
+the table.) In the storm,
 equilibrium is ten times as strict as in the demo: creep that passes for balance moves the time of failure
 by as much as the spacing does. So does the hour that the demo's storm steps begin with, within which 5 cm of
 motion count as failure; the times with a quarter of it are shown, and the coarsest spacing that a deck may
-have, ell/3, and a finer one beside the three. At one level the width of the band follows the spacing.
+have, ell/3, and a finer one beside the three. At one level the width of the band, measured as the slide
+begins, follows the spacing.
 """
 
 import pathlib
@@ -33,6 +36,7 @@ SPACINGS = (0.4, 0.35, 0.3)
 COARSE = 0.5  # ell/3
 FINE = 0.25
 LENGTH = 1.5
+SNAPSHOTS = 10  # of the slide, besides its start
 STRICT = ("tolerance = 1.0e-4", "tolerance = 1.0e-5")
 SHORT = ("storm_step = 3600.0", "storm_step = 900.0")
 CUT = ("duration = 15.0", "duration = 0.1")
@@ -50,19 +54,20 @@ def deck(levels, spacing, *more):
 
 
 def slope(levels, spacing):
-    """Time of failure [s], area of the slide by its block and by its fastest node [m2], and the run."""
+    """Time of failure [s], area of the slide by its block and by a metre [m2], and the run."""
     result = case.run("case.nml", deck(levels, spacing), name=f"level_{levels}_{spacing}")
     length = np.linalg.norm(result.field("displacement"), axis=1)
     block = np.median(length[length > 0.1 * length.max()])
-    mass, swift = (result.area[length > 0.5 * whole].sum() for whole in (block, length.max()))
+    mass, metre, swift = (result.area[length > way].sum() for way in (0.5 * block, 1.0, 0.5 * length.max()))
     trigger = float(result.summary["trigger_time"])
     print(
         f"     {levels} levels, {spacing} m: failure after {trigger:.6g} s, slide of {mass:.4g} m2, "
         f"displacement {block:.4g} m, largest {length.max():.4g} m"
     )
     name = f"two levels, {LENGTH} m" if levels == 2 else "one level"
-    rows.append([name, spacing, f"{trigger / 3600.0:.3f}", f"{mass:.4g}", f"{swift:.4g}", f"{block:.4g}"])
-    return trigger, mass, swift, result
+    areas = [f"{area:.4g}" for area in (mass, metre, swift)]
+    rows.append([name, spacing, f"{trigger / 3600.0:.3f}", *areas, f"{block:.4g}", f"{length.max():.4g}"])
+    return trigger, mass, metre, result
 
 
 def short_steps(spacing):
@@ -79,8 +84,8 @@ def spread(values):
 
 
 def band_area(result):
-    """Area [m2] of more than half of the greatest plastic strain: as long as the slide, as wide as its band."""
-    strain = result.field("plastic_strain")
+    """Area [m2] of more than half of the greatest plastic strain as the slide begins: as wide as its band."""
+    strain = result.field("plastic_strain", result.snapshots()[-1 - SNAPSHOTS])
     return float(result.area[strain > 0.5 * strain.max()].sum())
 
 
@@ -93,7 +98,7 @@ EVERY = (COARSE, *SPACINGS, FINE)
 every = (coarse, *two, fine)
 for spacing, run in zip(EVERY, every):
     case.study(f"two levels, {LENGTH} m", run[3], spacing, abs(run[0] / np.mean(times) - 1.0))
-by_block, by_fastest = (spread([run[k] for run in two]) for k in (1, 2))
+by_block, by_metre = (spread([run[k] for run in two]) for k in (1, 2))
 short = [short_steps(spacing) for spacing in SPACINGS]
 short_mean = np.mean([run[0] for run in short])
 for spacing, run in zip(SPACINGS, short):
@@ -102,13 +107,7 @@ what = "time of failure at three spacings, range over mean"
 case.target(what, spread(times), 0.03, "required", asked=True)
 what = "mass of the slide at three spacings, range over mean"
 case.target(what, by_block, 0.05, "required", asked=True)
-case.target(
-    "mass by half of the greatest displacement, range over mean",
-    by_fastest,
-    0.05,
-    "the other reading",
-    held=(0.0, 0.05),
-)
+case.target("mass moved by more than a metre, range over mean", by_metre, 0.05, "the other reading")
 case.target(
     "time of failure at three spacings, storm steps of 900 s, range over mean",
     spread([run[0] for run in short]),
@@ -120,7 +119,6 @@ case.target(
     spread([*times, fine[0]]),
     0.03,
     "a finer spacing",
-    held=(0.0, 0.06),
 )
 case.target(
     "time of failure with ell/3 as well, range over mean",
@@ -132,14 +130,23 @@ case.target(
 case.caution(
     f"the runs have ell = {LENGTH} m, an equilibrium to {STRICT[1].split()[-1]} ({STRICT[0].split()[-1]} in "
     f"the demo) and the spacings {', '.join(map(str, SPACINGS))} m. The mass agrees to {100 * by_block:.1f} % by "
-    f"the median of the block, {100 * by_fastest:.1f} % by half of the greatest displacement; the time of "
+    f"the median of the block, {100 * by_metre:.1f} % by what moved more than a metre; the time of "
     f"failure to {100 * spread(times):.1f} %, with {FINE} m as well to "
     f"{100 * spread([*times, fine[0]]):.1f} %, with {COARSE} m = ell/3 as well to "
     f"{100 * spread([coarse[0], *times]):.1f} %."
 )
 case.table(
-    "Time of failure, and the slide by the median of its block and by its fastest node",
-    ["series", "spacing [m]", "failure [h]", "by block [m²]", "by fastest [m²]", "median way [m]"],
+    "Time of failure, and the slide: what moved by more than half of its median, a metre, half of its greatest",
+    [
+        "series",
+        "spacing [m]",
+        "failure [h]",
+        "half of median [m²]",
+        "a metre [m²]",
+        "half of greatest [m²]",
+        "median [m]",
+        "greatest [m]",
+    ],
     sorted(rows, key=lambda row: (-len(row[0]), -row[1])),
 )
 smooth = [band_area(run[3]) for run in (coarse, two[-1])]

@@ -3,7 +3,9 @@
 
 Half the step of the slide must change the final displacement by less than 1 %, and so must twice the
 stabilisation. The greatest displacement and its mean over the slide (where it is more than half of that)
-are measured.
+are measured. How far a slide goes is what its soil loses in strength over what the flatter slope and the
+ground in front of it win back: of soil that loses little, a small change of strength is a large share of
+that. So the same is shown for soil that keeps more of its cohesion.
 """
 
 import pathlib
@@ -39,21 +41,17 @@ def slope(name, *replace):
 
 largest, mean, trigger, demo = slope("demo")
 curves = {"as it is": demo}
-for what, name, replace, held in (
-    (
-        "half the step of the slide",
-        "half_step",
-        ("name = 'slide'", "name = 'slide'\n  step_safety = 0.45"),
-        0.01,
-    ),
-    ("twice the stabilisation", "twice_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.1"), 0.08),
+TWICE = ("length = 1.1", "length = 1.1\n  stabilisation = 0.1")
+for what, name, replace in (
+    ("half the step of the slide", "half_step", ("name = 'slide'", "name = 'slide'\n  step_safety = 0.45")),
+    ("twice the stabilisation", "twice_alpha", TWICE),
 ):
     other = slope(name, replace)
     curves[what] = other[3]
     case.study(what, other[3], 0.35, abs(other[0] / largest - 1.0))
     for quantity, one, two in (("greatest", largest, other[0]), ("mean", mean, other[1])):
         change, moved = abs(two / one - 1.0), f"{what}: change of the {quantity} displacement"
-        case.target(moved, change, 0.01, "limit", held=(0.0, held), asked=True)
+        case.target(moved, change, 0.01, "limit", asked=True)
     case.check(f"{what}: change of the time of failure", abs(other[2] / trigger - 1.0), 0.15, "held")
 case.picture(
     "Largest displacement during the slide",
@@ -83,30 +81,39 @@ scatter = max(abs(row[2] / largest - np.polyval(slope_of, np.log2(row[0]))) for 
 # What ties the levels is a property of the model, as their length is; what it is worth is shown.
 tied = slope("twice_level", ("length = 1.1", "length = 1.1\n  level_stiffness = 0.05"))
 case.study("twice the level stiffness", tied[3], 0.35, abs(tied[0] / largest - 1.0))
-case.check("twice the level stiffness: change of the greatest displacement", abs(tied[0] / largest - 1), 0.3, "held")
-# Without stabilisation the slope does not slide as a mass: single nodes fly off.
-_, _, _, bare = slope(
-    "no_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.004\n  level_stiffness = 0.0")
+what = "twice the level stiffness: change of the greatest displacement"
+case.check(what, abs(tied[0] / largest - 1), 0.1, "held")
+# Soil that loses little slides little, and that depends on all that adds strength.
+TOUGH = ("residual_cohesion = 3.5e3", "residual_cohesion = 5.5e3")
+tough = [slope(name, TOUGH, *more) for name, more in (("tough", ()), ("tough_twice_alpha", (TWICE,)))]
+# Without stabilisation nodes move by themselves: the slope finds no equilibrium, or another one.
+case.run("case.nml", [("length = 1.1", "length = 1.1\n  stabilisation = 0.0")], code=3, name="no_alpha")
+_, _, early, _ = slope(
+    "little_alpha", ("length = 1.1", "length = 1.1\n  stabilisation = 0.004\n  level_stiffness = 0.0")
 )
-flown = np.linalg.norm(bare.field("displacement"), axis=1)
 case.remedy(
-    "nodal modes of a sliding mass; remedy: stabilisation = 0.05 and level_stiffness = 0.025",
-    f"with 0.004 and 0 of the soil's stiffness single nodes fly off, up to {flown.max():.3g} m, "
-    f"{flown.max() / np.percentile(flown, 95):.3g} times what 95 % of the nodes stay below",
-    f"largest displacement {largest:.3g} m",
-    flown.max() > 5.0 * largest,
+    "nodal modes; remedy: stabilisation = 0.05 and level_stiffness = 0.025",
+    "without, the slope finds no equilibrium under gravity (exit code 3); with 0.004 and 0 of the soil's "
+    f"stiffness it fails {abs(early - trigger) / 3600:.2g} h too early",
+    f"failure after {trigger / 3600:.3g} h",
+    early < 0.95 * trigger,
 )
 # How much strength is in the stabilisation: the factor of safety of the standing slope after 16 h.
 STORM = ("duration = 129600.0", "duration = 57600.0")
 SLIDE = (
     "name = 'slide'\n  kind = 'dynamic'\n  only_after_failure = .true.\n  solve = 'soil'\n  duration = 15.0"
 )
+GROUND = (
+    "&boundary                        ! what slides out lands on the ground in front of the toe\n"
+    "  name = 'ground'\n  where = 'box'\n  from_y = 5.1\n  floor = 5.0\n  stages = 'slide'\n/\n",
+    "",
+)
 FACTOR = (SLIDE, "name = 'factor'\n  kind = 'strength_reduction'\n  factor_tolerance = 0.002")
 
 
 def factor(name, smoothing):
     """Factor of safety after 16 h of rain."""
-    replace = [("levels = 2\n  length = 1.1", smoothing), STORM, FACTOR]
+    replace = [("levels = 2\n  length = 1.1", smoothing), STORM, GROUND, FACTOR]
     return float(case.run("case.nml", replace, name=f"factor_{name}").summary["factor_of_safety"])
 
 
@@ -124,11 +131,16 @@ case.check(what, tied_factor / factors["two levels"][0] - 1, 0.015, "held")
 case.note(
     "Twice the stabilisation adds a little strength: the factor of safety after 16 h goes from "
     + " and ".join(f"{a:.4g} to {b:.4g} at {level}" for level, (a, b) in factors.items())
-    + ". The slide begins close to equilibrium, so that little decides how far it goes: rain takes only some 1 % "
-    "of this slope's factor in an hour, and equilibria of the storm are exact to 1e-4. "
-    f"Over stabilisations from {rows[0][0]:g} to {rows[-1][0]:g} "
-    f"the slide changes by {100 * slope_of[0]:.1f} % for each doubling, with single runs up to "
-    f"{100 * scatter:.1f} % off that line."
+    + f". Over stabilisations from {rows[0][0]:g} to {rows[-1][0]:g} "
+    f"the slide changes by {100 * slope_of[0]:.2f} % for each doubling, with single runs up to "
+    f"{100 * scatter:.1f} % off that line; the time of failure by "
+    f"{100 * abs(other[2] / trigger - 1):.1f} % from 0.05 to 0.1."
+)
+case.note(
+    "Soil that keeps 5.5 of its 6.5 kPa of cohesion, in place of 3.5, slides "
+    f"{tough[0][0]:.3g} m, and twice the stabilisation changes that by "
+    f"{100 * abs(tough[1][0] / tough[0][0] - 1):.1f} %: "
+    "the less a slope is out of equilibrium when it slides, the more its way hangs on small strengths."
 )
 case.note(
     f"Twice the stiffness that ties the levels gives a factor of {tied_factor:.4g} and a slide of "

@@ -98,7 +98,9 @@ contains
              'Stiffness of the difference of both levels of F, as a fraction of Young''s modulus; '// &
              'none with stabilisation = 0.', 'levels=2')
     call key(t, 'stabilisation_floor', 'real', '', '0.02', '[0, 1]', &
-             'Smallest fraction of the stabilisation left in damaged or yielding soil.')
+             'Smallest fraction of the stabilisation left in damaged or yielding soil. Times '// &
+             'stabilisation and Young''s modulus it is about the strength that this adds for each '// &
+             'unit of strain: lower it where soil flows.')
   end subroutine keys_add_smoothing
 
   !> Keys of &initial.

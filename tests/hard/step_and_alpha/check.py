@@ -84,8 +84,23 @@ case.study("twice the level stiffness", tied[3], 0.35, abs(tied[0] / largest - 1
 what = "twice the level stiffness: change of the greatest displacement"
 case.check(what, abs(tied[0] / largest - 1), 0.1, "held")
 # Soil that loses little slides little, and that depends on all that adds strength.
-TOUGH = ("residual_cohesion = 3.5e3", "residual_cohesion = 5.5e3")
+TOUGH = ("residual_cohesion = 4.5e3", "residual_cohesion = 5.5e3")
 tough = [slope(name, TOUGH, *more) for name, more in (("tough", ()), ("tough_twice_alpha", (TWICE,)))]
+# What stays of the stabilisation where soil flows adds strength, the more the further it has flowed.
+FLOOR = "stabilisation_floor = 0.002"
+FLOORS = (0.02, 0.005, 0.002, 0.001)
+stays = {
+    floor: [
+        slope(f"floor_{floor}_{len(more)}", (FLOOR, FLOOR.replace("0.002", str(floor))), *more)
+        for more in ((), (TOUGH,))
+    ]
+    for floor in FLOORS
+}
+case.table(
+    "The slide over what stays of the stabilisation where soil flows",
+    ["stabilisation_floor", "greatest, mean [m]", "the same, residual cohesion 5.5 kPa [m]"],
+    [[f"{floor:g}", *(f"{run[0]:.3g}, {run[1]:.3g}" for run in runs)] for floor, runs in stays.items()],
+)
 # Without stabilisation nodes move by themselves: the slope finds no equilibrium, or another one.
 case.run("case.nml", [("length = 1.1", "length = 1.1\n  stabilisation = 0.0")], code=3, name="no_alpha")
 _, _, early, _ = slope(
@@ -137,7 +152,7 @@ case.note(
     f"{100 * abs(other[2] / trigger - 1):.1f} % from 0.05 to 0.1."
 )
 case.note(
-    "Soil that keeps 5.5 of its 6.5 kPa of cohesion, in place of 3.5, slides "
+    "Soil that keeps 5.5 of its 6.5 kPa of cohesion, in place of 4.5, slides "
     f"{tough[0][0]:.3g} m, and twice the stabilisation changes that by "
     f"{100 * abs(tough[1][0] / tough[0][0] - 1):.1f} %: "
     "the less a slope is out of equilibrium when it slides, the more its way hangs on small strengths."

@@ -8,15 +8,17 @@ when nothing moves any more. The error is the largest distance of the five measu
 The rods land on the table in front of the gate (`floor`): without it the toe falls on, the heap has no foot
 and the line goes on moving into the pile.
 
-Asked for are 5 mm, and they are missed at every spacing, over which the line settles. Its two ends answer
-to different things: friction and dilation move the upper one, the stress at rest and the moduli the lower
-one, and no single cause that is run below brings both within 5 mm; nor does the best of all thresholds. At
-rest the whole pile yields already: between rigid walls the cone allows no stress ratio below (1 - sqrt(3)
-alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu).
+The stabilisation that stays in flowing soil is an elastic stiffness, which adds about stabilisation times
+stabilisation_floor times E to the strength for each unit of strain. At the default floor of 0.02 that is 840 Pa,
+near the strength at the bottom of the pile, rho g H tan(phi) = 936 Pa, for rods that flow by several units; here
+it is a tenth. The other way, nodes begin to move by themselves. Both are run below, at the finest spacing, since
+the line hangs on them. Rods of the face that the gate held peel off and come to lie apart, so that their cells
+open: that is all of the swelling, which at psi = 0 there should not be. The median of the flowing rods keeps its
+volume.
 
-A softer stabilisation comes nearer as spacings become finer, and is not taken, for a reason other than the
-line: flowing rods swell, which at psi = 0 they should not, and the more, the finer the spacing. The
-swelling is measured below.
+The two ends of the line answer to different things: friction and dilation move the upper one, the stress at rest
+and the moduli the lower one. At rest the whole pile yields already: between rigid walls the cone allows no stress
+ratio below (1 - sqrt(3) alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu).
 
 The kernel is purely material, so that the flowing rods (strains of several hundred per cent) are beyond what
 it should be trusted with, and the final surface is drawn, not judged.
@@ -44,7 +46,7 @@ SURFACE = np.loadtxt(case.folder / "final_surface.csv", delimiter=",", skiprows=
 FLOOR = "  where = 'all'\n  floor = 0.0\n  stages = 'collapse'\n"
 NO_FLOOR = "  where = 'bottom'\n  displacement = 'fixed'\n  stages = 'collapse'\n"
 PHI = 19.8
-SOFT = [("&soil\n", "&smoothing\n  stabilisation_floor = 0.002\n/\n&soil\n")]
+KEEP = "stabilisation_floor = 0.002"
 BOTTOM = "&boundary\n  where = 'bottom'"
 LATERAL_1 = "&initial\n  stress = 'k0'\n  lateral_stress_ratio = 1.0\n/\n"
 
@@ -63,8 +65,13 @@ VARIATIONS = {
     "moduli divided by 4": [("youngs_modulus = 0.84e6", "youngs_modulus = 0.21e6")],
     "stress at rest from K = 1": [(BOTTOM, LATERAL_1 + BOTTOM)],
     "local damping 0.1": [("kind = 'dynamic'", "kind = 'dynamic'\n  damping = 0.1")],
-    "two levels, ell = 15 mm": [("&soil\n", "&smoothing\n  levels = 2\n  length = 0.015\n/\n&soil\n")],
-    "stabilisation floor 0.002": SOFT,
+    "two levels, ell = 15 mm": [(KEEP, f"{KEEP}\n  levels = 2\n  length = 0.015")],
+}
+# The stabilisation, at the finest spacing.
+STABILISED = {
+    "stabilisation floor 0.02": [(KEEP, "stabilisation_floor = 0.02")],
+    "stabilisation floor 0.005": [(KEEP, "stabilisation_floor = 0.005")],
+    "stabilisation 0.02": [(KEEP, f"{KEEP}\n  stabilisation = 0.02")],
 }
 
 
@@ -88,11 +95,12 @@ def least_miss(result):
 
 
 def swelling(result):
-    """Mean det F - 1 of the soil that flows (plastic strain above 0.1), which is none at psi = 0."""
+    """Mean and median of det F - 1 of the soil that flows (plastic strain above 0.1), which is none at psi = 0."""
     with h5py.File(result.path) as file:
         f = file["restart"][result.snapshots()[-1]]["f"][:]
-    flows = result.area * (result.field("plastic_strain") > 0.1)
-    return np.average(f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2], weights=flows) - 1.0
+    flows = result.field("plastic_strain") > 0.1
+    opened = (f[:, 0] * f[:, 3] - f[:, 1] * f[:, 2] - 1.0)[flows]
+    return np.average(opened, weights=result.area[flows]), np.median(opened)
 
 
 def distances(line):
@@ -117,7 +125,7 @@ def told(apart):
     return ", ".join(f"{1e3 * d:+.1f}" for d in apart) + " mm"
 
 
-SPACINGS = (HEIGHT / 15, HEIGHT / 20, HEIGHT / 25, HEIGHT / 40) if case.full else (HEIGHT / 15,)
+SPACINGS = [HEIGHT / rows for rows in ((15, 20, 25, 40, 50) if case.full else (15,))]
 lines, results = {}, {}
 for h in SPACINGS:
     results[h] = result = collapse(h)
@@ -140,22 +148,32 @@ case.check(
     0.01,
     "exact for horizontal layers",
 )
-case.target(
-    f"failure line [m], h = {1e3 * h:.1f} mm",
-    abs(apart).max(),
-    0.005,
-    "S4: within 5 mm",
-    held=(0.005, 0.0081),
-    asked=True,
+case.check(
+    "median of det F - 1 of the flowing rods",
+    abs(swelling(result)[1]),
+    1e-3,
+    "psi = 0",
 )
+if not case.full:
+    case.check("failure line [m]", abs(apart).max(), 0.0081, "held; 5 mm at the finest spacing")
 
 if case.full:
+    case.target(
+        f"failure line [m], h = {1e3 * h:.1f} mm", abs(apart).max(), 0.005, "S4: within 5 mm", asked=True
+    )
+    finest = {title: collapse(h, change, name=title.replace(" ", "_")) for title, change in STABILISED.items()}
+    worst = {title: abs(distances(failure_line(run))).max() for title, run in finest.items()}
     sweep = {moved: abs(distances(failure_line(result, moved))).max() for moved in (1e-3, 1.5e-3, 2e-3, 3e-3)}
     best, threshold = least_miss(result)
-    case.note(
-        f"S4 misses 5 mm by {1e3 * abs(apart).max() - 5.0:.1f} mm: from the top down the line of h = "
-        f"{1e3 * h:.1f} mm lies {told(apart)} over the measured points, with the upper end too deep in the "
-        "pile and the lower one too shallow. Displacements of "
+    case.caution(
+        f"From the top down the line of h = {1e3 * h:.1f} mm lies {told(apart)} over the measured points. It "
+        "hangs on the spacing and on the stabilisation that stays in flowing rods: the largest distance is "
+        + ", ".join(f"{1e3 * abs(distances(lines[s])).max():.1f}" for s in SPACINGS)
+        + " mm at "
+        + ", ".join(f"{1e3 * s:.1f}" for s in SPACINGS)
+        + " mm, and at the last of these "
+        + ", ".join(f"{1e3 * d:.1f} mm with {title}" for title, d in worst.items())
+        + ". Displacements of "
         + ", ".join(f"{1e3 * m:g}" for m in sweep)
         + " mm as threshold give "
         + ", ".join(f"{1e3 * e:.1f}" for e in sweep.values())
@@ -164,16 +182,13 @@ if case.full:
     runs = {"as in the deck": results[HEIGHT / 20]}
     for title, change in VARIATIONS.items():
         runs[title] = collapse(HEIGHT / 20, change, name=f"variation_{len(runs)}")
-    finer = HEIGHT / 25
-    runs[f"as in the deck, h = {1e3 * finer:.0f} mm"] = results[finer]
-    runs[f"stabilisation floor 0.002, h = {1e3 * finer:.0f} mm"] = collapse(finer, SOFT, name="soft")
+    runs[f"as in the deck, h = {1e3 * h:.0f} mm"] = result
+    runs.update({f"{title}, h = {1e3 * h:.0f} mm": run for title, run in finest.items()})
+    swollen = {title: "{:.1f}, {:.2f}".format(*(100.0 * s for s in swelling(run))) for title, run in runs.items()}
     case.table(
         f"What the line hangs on (h = {1e3 * HEIGHT / 20:.0f} mm where not said)",
-        ["run", "line over the measured points, from the top down", "swelling of the flowing rods [%]"],
-        [
-            [title, told(distances(failure_line(run))), f"{100.0 * swelling(run):.1f}"]
-            for title, run in runs.items()
-        ],
+        ["run", "line over the measured points, from the top down", "swelling where rods flow: mean, median [%]"],
+        [[title, told(distances(failure_line(run))), swollen[title]] for title, run in runs.items()],
     )
     bare = collapse(HEIGHT / 20, [(FLOOR, NO_FLOOR)], name="no_floor")
     apart_bare = distances(failure_line(bare))

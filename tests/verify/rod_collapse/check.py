@@ -13,8 +13,8 @@ stabilisation_floor times E to the strength for each unit of strain. At the defa
 near the strength at the bottom of the pile, rho g H tan(phi) = 936 Pa, for rods that flow by several units; here
 it is a tenth. The other way, nodes begin to move by themselves. Both are run below, at the finest spacing, since
 the line hangs on them. Rods of the face that the gate held peel off and come to lie apart, so that their cells
-open: that is all of the swelling, which at psi = 0 there should not be. The median of the flowing rods keeps its
-volume.
+open: nearly all of the swelling is there, which at psi = 0 should not be. The median of the flowing rods keeps
+its volume.
 
 The two ends of the line answer to different things: friction and dilation move the upper one, the stress at rest
 and the moduli the lower one. At rest the whole pile yields already: between rigid walls the cone allows no stress

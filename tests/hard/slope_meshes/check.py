@@ -3,9 +3,8 @@
 
 The time of failure must agree within 3 %, and within 5 % the mass of the slide: what has moved by more than
 half as far as the middle of its block, the median of all that moved, when the soil has come to rest; or, read
-otherwise, what has moved by more than a metre. (Half of the greatest displacement, that of single nodes at the
-toe, is no good measure: it is about as far as the middle of the block goes, and so cuts through it. It is in
-the table.) In the storm,
+otherwise, what has moved by more than a metre, or by more than half of the greatest displacement (that of single
+nodes at the toe, so that its half cuts through the block). In the storm,
 equilibrium is ten times as strict as in the demo: creep that passes for balance moves the time of failure
 by as much as the spacing does. So does the hour that the demo's storm steps begin with, within which 5 cm of
 motion count as failure; the times with a quarter of it are shown, and the coarsest spacing that a deck may
@@ -54,7 +53,7 @@ def deck(levels, spacing, *more):
 
 
 def slope(levels, spacing):
-    """Time of failure [s], area of the slide by its block and by a metre [m2], and the run."""
+    """Time of failure [s], area of the slide by its block, a metre and its fastest node [m2], and the run."""
     result = case.run("case.nml", deck(levels, spacing), name=f"level_{levels}_{spacing}")
     length = np.linalg.norm(result.field("displacement"), axis=1)
     block = np.median(length[length > 0.1 * length.max()])
@@ -67,7 +66,7 @@ def slope(levels, spacing):
     name = f"two levels, {LENGTH} m" if levels == 2 else "one level"
     areas = [f"{area:.4g}" for area in (mass, metre, swift)]
     rows.append([name, spacing, f"{trigger / 3600.0:.3f}", *areas, f"{block:.4g}", f"{length.max():.4g}"])
-    return trigger, mass, metre, result
+    return trigger, mass, metre, swift, result
 
 
 def short_steps(spacing):
@@ -97,8 +96,8 @@ times = [run[0] for run in two]
 EVERY = (COARSE, *SPACINGS, FINE)
 every = (coarse, *two, fine)
 for spacing, run in zip(EVERY, every):
-    case.study(f"two levels, {LENGTH} m", run[3], spacing, abs(run[0] / np.mean(times) - 1.0))
-by_block, by_metre = (spread([run[k] for run in two]) for k in (1, 2))
+    case.study(f"two levels, {LENGTH} m", run[4], spacing, abs(run[0] / np.mean(times) - 1.0))
+by_block, by_metre, by_fastest = (spread([run[k] for run in two]) for k in (1, 2, 3))
 short = [short_steps(spacing) for spacing in SPACINGS]
 short_mean = np.mean([run[0] for run in short])
 for spacing, run in zip(SPACINGS, short):
@@ -107,7 +106,9 @@ what = "time of failure at three spacings, range over mean"
 case.target(what, spread(times), 0.03, "required", asked=True)
 what = "mass of the slide at three spacings, range over mean"
 case.target(what, by_block, 0.05, "required", asked=True)
-case.target("mass moved by more than a metre, range over mean", by_metre, 0.05, "the other reading")
+case.target("mass moved by more than a metre, range over mean", by_metre, 0.05, "another reading")
+what = "mass by half of the greatest displacement, range over mean"
+case.target(what, by_fastest, 0.05, "another reading", held=(0.0, 0.08))
 case.target(
     "time of failure at three spacings, storm steps of 900 s, range over mean",
     spread([run[0] for run in short]),
@@ -130,7 +131,8 @@ case.target(
 case.caution(
     f"the runs have ell = {LENGTH} m, an equilibrium to {STRICT[1].split()[-1]} ({STRICT[0].split()[-1]} in "
     f"the demo) and the spacings {', '.join(map(str, SPACINGS))} m. The mass agrees to {100 * by_block:.1f} % by "
-    f"the median of the block, {100 * by_metre:.1f} % by what moved more than a metre; the time of "
+    f"the median of the block, {100 * by_metre:.1f} % by what moved more than a metre, "
+    f"{100 * by_fastest:.1f} % by half of the greatest displacement; the time of "
     f"failure to {100 * spread(times):.1f} %, with {FINE} m as well to "
     f"{100 * spread([*times, fine[0]]):.1f} %, with {COARSE} m = ell/3 as well to "
     f"{100 * spread([coarse[0], *times]):.1f} %."
@@ -149,8 +151,8 @@ case.table(
     ],
     sorted(rows, key=lambda row: (-len(row[0]), -row[1])),
 )
-smooth = [band_area(run[3]) for run in (coarse, two[-1])]
-rough = [band_area(run[3]) for run in one]
+smooth = [band_area(run[4]) for run in (coarse, two[-1])]
+rough = [band_area(run[4]) for run in one]
 case.remedy(
     "bands as narrow as the mesh; remedy: a smoothing length of 1.5 m",
     f"one level, 0.5 and 0.3 m: band of {rough[0]:.3g} and {rough[1]:.3g} m2, failure after {one[0][0]:.6g} "

@@ -16,6 +16,9 @@ line hangs on them. Rods of the face that the gate held peel off and come to lie
 open: nearly all of the swelling is there, which at psi = 0 should not be. The median of the flowing rods keeps
 its volume.
 
+This floor and the finest spacing were taken after their lines had been seen, so that the 5 mm are met by a run
+and not shown to hold: with a floor of 0.005, which serves the demo's slope as well, they are missed.
+
 The two ends of the line answer to different things: friction and dilation move the upper one, the stress at rest
 and the moduli the lower one. At rest the whole pile yields already: between rigid walls the cone allows no stress
 ratio below (1 - sqrt(3) alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu).

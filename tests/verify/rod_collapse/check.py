@@ -16,8 +16,10 @@ line hangs on them. Rods of the face that the gate held peel off and come to lie
 open: nearly all of the swelling is there, which at psi = 0 should not be. The median of the flowing rods keeps
 its volume.
 
-This floor and the finest spacing were taken after their lines had been seen, so that the 5 mm are met by a run
-and not shown to hold: with a floor of 0.005, which serves the demo's slope as well, they are missed.
+The line does not settle as the spacing falls. Perfectly plastic rods without dilation shear in bands as narrow as
+the nodes allow, so that the line comes down with the bands from above the measured points to below them. It is
+judged at the finest spacing. At some coarser ones it is within 5 mm; the floor and one of these spacings (2 mm)
+were taken after their lines had been seen, the finest one before.
 
 The two ends of the line answer to different things: friction and dilation move the upper one, the stress at rest
 and the moduli the lower one. At rest the whole pile yields already: between rigid walls the cone allows no stress
@@ -128,7 +130,7 @@ def told(apart):
     return ", ".join(f"{1e3 * d:+.1f}" for d in apart) + " mm"
 
 
-SPACINGS = [HEIGHT / rows for rows in ((15, 20, 25, 40, 50) if case.full else (15,))]
+SPACINGS = [HEIGHT / rows for rows in ((15, 20, 25, 40, 50, 70) if case.full else (15,))]
 lines, results = {}, {}
 for h in SPACINGS:
     results[h] = result = collapse(h)
@@ -158,11 +160,16 @@ case.check(
     "psi = 0",
 )
 if not case.full:
-    case.check("failure line [m]", abs(apart).max(), 0.0081, "held; 5 mm at the finest spacing")
+    case.check("failure line [m]", abs(apart).max(), 0.0081, "held; 5 mm are wanted at the finest spacing")
 
 if case.full:
     case.target(
-        f"failure line [m], h = {1e3 * h:.1f} mm", abs(apart).max(), 0.005, "S4: within 5 mm", asked=True
+        f"failure line [m], h = {1e3 * h:.1f} mm",
+        abs(apart).max(),
+        0.005,
+        "S4: within 5 mm, at the finest spacing",
+        held=(0.0, 0.007),
+        asked=True,
     )
     fine = {
         f"{title}, h = {1e3 * HEIGHT / rows:.1f} mm": collapse(HEIGHT / rows, change, name=f"fine_{k}")
@@ -171,7 +178,7 @@ if case.full:
     worst = {title: abs(distances(failure_line(run))).max() for title, run in fine.items()}
     sweep = {moved: abs(distances(failure_line(result, moved))).max() for moved in (1e-3, 1.5e-3, 2e-3, 3e-3)}
     best, threshold = least_miss(result)
-    case.caution(
+    case.note(
         f"From the top down the line of h = {1e3 * h:.1f} mm lies {told(apart)} over the measured points. It "
         "hangs on the spacing and on the stabilisation that stays in flowing rods: the largest distance is "
         + ", ".join(f"{1e3 * abs(distances(lines[s])).max():.1f}" for s in SPACINGS)

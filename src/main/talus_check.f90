@@ -314,6 +314,8 @@ contains
                state => session%state, stage => session%deck%stage(number))
       trial = 0.01_dp*stage%duration
       if (stage%kind == 'storm') trial = stage%storm_step
+      seepage%explicit_only = stage%water_step == 'explicit'
+      seepage%safety = stage%water_safety
       call seepage_shape(seepage, disc, ground, session%conditions%inlets, state)
       call face_fluxes(seepage, disc, ground, state)
       write (output_unit, '(2a)') '  explicit seepage step   ', &

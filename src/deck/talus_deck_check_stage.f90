@@ -34,8 +34,10 @@ contains
         call check_mass(store, at(i), stage, deck, messages)
         call check_clock(store, at(i), stage, messages)
         call check_order(store, at(i), i, deck, messages)
-        if (stage%kind /= '' .and. (stage%solve == 'soil' .or. stage%solve == 'both')) &
+        if (stage%kind /= '' .and. (stage%solve == 'soil' .or. stage%solve == 'both')) then
           call check_support(store, at(i), stage, deck, messages)
+          call check_landed(store, at(i), i, deck, messages)
+        end if
       end associate
     end do
   end subroutine check_stages
@@ -180,8 +182,15 @@ contains
     starts_weightless = deck%initial%stress == 'none' .and. &
       len(deck%initial%from_result) == 0 .and. &
       deck_exceeds(deck%run%gravity, 0.0_dp) .and. &
-      .not. any(kind_is(deck%stage(:i-1), 'geostatic'))
+      .not. any(feels_weight(deck%stage(:i-1)))
   end function starts_weightless
+
+  !> Which stages leave a soil that bears its weight; trials of strength leave it as it was.
+  elemental logical function feels_weight(stage)
+    type(stage_t), intent(in) :: stage
+
+    feels_weight = stage%kind /= 'strength_reduction' .and. stage%solve /= 'seepage'
+  end function feels_weight
 
   !> Which soils have a strength.
   elemental logical function is_plastic(soil)
@@ -205,20 +214,22 @@ contains
     type(stage_t), intent(in) :: stage
     type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
-    logical :: holds(2)
+    logical :: holds(2), lands
     integer :: i
 
     if (.not. deck_exceeds(deck%run%gravity, 0.0_dp)) return
     holds = .false.
+    lands = .false.
     do i = 1, size(deck%boundary)
       associate (boundary => deck%boundary(i))
         if (.not. deck_acts_in(boundary, stage%name)) cycle
         if (boundary%displacement == '') return
         holds = holds .or. deck_held(boundary)
+        lands = lands .or. deck_given(boundary%floor)
       end associate
     end do
     if (stage%kind == 'dynamic') then
-      if (.not. holds(2)) call warn(store, section, 'name', &
+      if (.not. (holds(2) .or. lands)) call warn(store, section, 'name', &
           'no &boundary holds y in this stage: the '// &
                                    'body falls freely', messages)
       return
@@ -230,4 +241,29 @@ contains
       'no &boundary holds x in this stage', messages, &
       'a &boundary with displacement = ''fixed'' or ''roller_x''')
   end subroutine check_support
+
+  !> What has landed in a dynamic stage needs its floor in the stages that look for equilibrium too.
+  subroutine check_landed(store, section, i, deck, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section, i          !! i: the stage
+    type(deck_t), intent(in) :: deck
+    type(messages_t), intent(inout) :: messages
+    integer :: j, k
+
+    if (deck%stage(i)%kind == 'dynamic') return
+    if (.not. deck_exceeds(deck%run%gravity, 0.0_dp)) return
+    do j = 1, size(deck%boundary)
+      associate (boundary => deck%boundary(j))
+        if (.not. deck_given(boundary%floor)) cycle
+        if (deck_acts_in(boundary, deck%stage(i)%name)) cycle
+        do k = 1, i - 1
+          if (deck%stage(k)%kind /= 'dynamic') cycle
+          if (.not. deck_acts_in(boundary, deck%stage(k)%name)) cycle
+          call warn(store, section, 'name', 'the floor of stage '''//deck%stage(k)%name// &
+            ''' does not act in this one: what has landed falls on', messages)
+          return
+        end do
+      end associate
+    end do
+  end subroutine check_landed
 end module talus_deck_check_stage

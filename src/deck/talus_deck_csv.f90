@@ -8,7 +8,8 @@ module talus_deck_csv
   private
   public :: hydrograph_read, retention_read, retention_check
 
-  real(dp), parameter :: intensity_greatest = 1.0e4_dp ! mm/h; ten times the record
+  !> As the key `rain` of &boundary allows [mm/h].
+  real(dp), parameter, public :: intensity_greatest = 1.0e3_dp
   real(dp), parameter :: conductivity_least = 1.0e-20_dp ! log k_r is interpolated
 
 contains

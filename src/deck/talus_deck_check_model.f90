@@ -5,7 +5,7 @@ module talus_deck_check_model
   use talus_text, only: text_of
   use talus_deck_messages, only: messages_t
   use talus_deck_types, only: deck_t, deck_given, deck_exceeds, deck_moves_soil
-  use talus_deck_store, only: store_t, store_first, store_is_wrong
+  use talus_deck_store, only: store_t, store_first, store_value, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of, extent_holds
   use talus_deck_check_file, only: check_file
   use talus_deck_report, only: complain => report_error, warn => report_warning
@@ -124,6 +124,7 @@ contains
     type(store_t), intent(in) :: store
     type(deck_t), intent(in) :: deck
     type(messages_t), intent(inout) :: messages
+    type(extent_t) :: extent
     integer :: section
     real(dp) :: largest
 
@@ -135,7 +136,9 @@ contains
             'off: a slope under gravity may fly apart in '// &
                   'spurious modes', messages)
       end if
+      call check_idle('stabilisation_floor')
       if (smoothing%levels /= 2) return
+      call check_idle('level_stiffness')
       if (smoothing%weights == 'rk' .or. smoothing%weights == 'area') then
         call warn(store, section, 'weights', 'these weights fail the patch test', messages)
       end if
@@ -144,6 +147,10 @@ contains
                       '''gradient'' without &damage')
       end if
       if (smoothing%acts_on == 'damage_only') call check_damage_only
+      extent = extent_of(deck%geometry)
+      if (extent%is_known .and. deck_exceeds(smoothing%length, &
+        max(extent%right - extent%left, extent%top - extent%bottom))) call warn(store, section, &
+        'length', 'larger than the body: every node is smoothed over nearly all of it', messages)
       if (deck%geometry%kind == 'file' .or. .not. deck_given(nodes%spacing)) return
       largest = nodes%spacing
       if (deck_exceeds(nodes%spacing_y, largest)) largest = nodes%spacing_y
@@ -156,6 +163,16 @@ contains
     end associate
 
   contains
+
+    !> A key of the deck that only takes part where there is stabilisation.
+    subroutine check_idle(key)
+      character(*), intent(in) :: key
+
+      if (deck_exceeds(deck%smoothing%stabilisation, 0.0_dp) .or. &
+          .not. deck_given(deck%smoothing%stabilisation)) return
+      if (store%section(section)%value(store_value(store, section, key))%is_given) call warn( &
+        store, section, key, 'has no effect with stabilisation = 0', messages)
+    end subroutine check_idle
 
     !> The plastic strain of a point is its own: smoothing the damage driver alone cannot reach it.
     subroutine check_damage_only

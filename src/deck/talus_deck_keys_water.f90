@@ -12,7 +12,8 @@ contains
   subroutine keys_add_water(t)
     type(table_t), intent(inout) :: t
     character(*), parameter :: fx = 'retention=fredlund_xing', bc = 'retention=brooks_corey'
-    character(*), parameter :: vg = 'retention=van_genuchten'
+    character(*), parameter :: vg = 'retention=van_genuchten', law = &
+      'retention=van_genuchten|gardner|brooks_corey|fredlund_xing|broadbridge_white'
 
     call group(t, 'water', .true., .false., &
                'Retention and conductivity of one soil or of all; without it there is no water.')
@@ -26,9 +27,9 @@ contains
     call key(t, 'conductivity_y', 'real', 'm/s', '=conductivity_x', '(0, 10]', &
              'Saturated hydraulic conductivity along y.')
     call key(t, 'saturation_residual', 'real', '', '0', '[0, 1)', &
-             'Degree of saturation that no suction removes.')
+             'Degree of saturation that no suction removes.', law)
     call key(t, 'saturation_maximum', 'real', '', '1', '(0, 1]', &
-             'Degree of saturation at zero suction.')
+             'Degree of saturation at zero suction.', law)
     call key(t, 'alpha', 'real', '1/m', '*', '[1e-4, 1e4]', &
              'alpha of van Genuchten or Gardner, or 1/lambda_c of Broadbridge and White, per '// &
              'metre of suction head.', 'retention=van_genuchten|gardner|broadbridge_white')

@@ -34,6 +34,10 @@ module talus_check
   real(dp), parameter :: overhead = 1.5_dp
   !> Soil steps of the search for the time of a failure, for each halving of the storm's step.
   real(dp), parameter :: search_steps = 1500.0_dp
+  !> Turns in which water and soil agree on a step of the storm, by experience: soil steps are 2 to 6
+  !> times those of a single turn, steps of the water 4 to 8 times. Where soft soil consolidates the
+  !> first steps may take up to coupling_turns of them.
+  real(dp), parameter :: typical_turns = 4.0_dp
   !> Output above which a warning tells how to write less.
   real(dp), parameter :: many_snapshots = 1.0e3_dp, many_bytes = 1.0e10_dp
 
@@ -234,7 +238,7 @@ contains
 
     associate (stage => session%deck%stage(number))
       session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
-        .not. (stage%kind == 'storm' .and. coupling_needed(session%ground))
+        .not. is_joint(session, number)
       session%motion%local = stage%damping
       session%motion%consistent = stage%mass == 'consistent'
       call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
@@ -246,7 +250,7 @@ contains
       if (spectrum) call print_spectrum(session)
       session%motion%step = stage%step_safety*session%motion%step
       each = time_of_a_step(session)
-      steps = typical_steps(session, number)
+      steps = turns(session, number)*typical_steps(session, number)
       write (output_unit, '(2a)') '  soil steps, about       ', text_of(steps, 3)
       estimate = overhead*steps*each
       if (stage%kind /= 'storm' .or. all(session%ground%law%plasticity == 0)) return
@@ -256,6 +260,25 @@ contains
       slide = slide + overhead*steps*each
     end associate
   end subroutine print_soil
+
+  !> True where water and soil agree in each step of the storm's clock.
+  pure logical function is_joint(session, number)
+    type(session_t), intent(in) :: session
+    integer, intent(in) :: number
+
+    associate (stage => session%deck%stage(number))
+      is_joint = stage%kind == 'storm' .and. stage%solve == 'both' .and. &
+        coupling_needed(session%ground)
+    end associate
+  end function is_joint
+
+  !> How often a step of the storm's clock is solved, about.
+  pure real(dp) function turns(session, number)
+    type(session_t), intent(in) :: session
+    integer, intent(in) :: number
+
+    turns = merge(typical_turns, 1.0_dp, is_joint(session, number))
+  end function turns
 
   !> Time of a soil step [s], from a few under load that are taken back.
   real(dp) function time_of_a_step(session) result(each)
@@ -307,7 +330,7 @@ contains
     integer, intent(in) :: number
     logical, intent(in) :: spectrum
     real(dp), intent(inout) :: estimate !! of the stage so far [s]
-    real(dp) :: began, spent, trial, reached, done
+    real(dp) :: began, spent, trial, reached, done, scale
     integer(i8) :: taken
 
     associate (seepage => session%seepage, disc => session%disc, ground => session%ground, &
@@ -336,9 +359,10 @@ contains
         taken = state%seepage_steps - session%last_good%seepage_steps
         spent = timer_now() - began
       end do
-      estimate = estimate + spent*stage%duration/done
+      scale = turns(session, number)*stage%duration/done
+      estimate = estimate + spent*scale
       write (output_unit, '(2a)') '  seepage steps, about    ', &
-        text_of(real(taken, dp)*stage%duration/done, 3)//', by the first '// &
+        text_of(real(taken, dp)*scale, 3)//', by the first '// &
         text_of(100.0_dp*done/stage%duration, 2)//' % of the stage'
       state = session%last_good
     end associate

@@ -7,6 +7,7 @@ module talus_report
   use talus_memory, only: memory_held
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of, text_as_word
+  use talus_deck_types, only: deck_given
   use talus_session, only: session_t
   use talus_soil_law, only: plasticity_none
   use talus_strength, only: strength_cone
@@ -50,16 +51,20 @@ contains
     end associate
   end subroutine report_summary
 
-  !> What makes the results doubtful although the run ended well, '' for nothing.
+  !> What makes the results doubtful although the run ended well, '' for nothing. Soil may fall as
+  !> far as its floor, and a body that spins may turn over.
   function warning_of(session) result(warning)
     type(session_t), intent(in) :: session
     character(:), allocatable :: warning
-    real(dp) :: size
+    real(dp) :: size, lowest(2)
 
-    associate (x => session%disc%mesh%x)
-      size = norm2(maxval(x, dim=2) - minval(x, dim=2))
-    end associate
     warning = ''
+    associate (deck => session%deck, x => session%disc%mesh%x)
+      if (any(abs(deck%stage%spin) > 0.0_dp)) return
+      lowest = minval(x, dim=2)
+      lowest(2) = min(lowest(2), minval(deck%boundary%floor, deck_given(deck%boundary%floor)))
+      size = norm2(maxval(x, dim=2) - lowest)
+    end associate
     if (session%greatest_displacement > size) warning = 'the soil moved '// &
       text_of(session%greatest_displacement, 4)//' m, further than the model is wide and high ('// &
       text_of(size, 4)//' m): it fell freely or flew apart'

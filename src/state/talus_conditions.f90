@@ -12,12 +12,14 @@ module talus_conditions
   public :: conditions_t, inlets_t, conditions_allocate, conditions_hold, conditions_load
   public :: conditions_deform, conditions_follow, conditions_floor, floor_t
   public :: conditions_support, conditions_reaction
-  public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch
+  public :: inlet_paint_t, inlets_start, inlets_paint, inlets_finish, inlets_catch, inlets_rules
 
   integer, parameter, public :: inlet_none = 0, inlet_head = 1, inlet_flux = 2, inlet_rain = 3, &
     inlet_seepage = 4
 
-  !> Where water crosses the boundary. The halves of inlet i are half(offset(i):offset(i+1)-1).
+  !> Where water crosses the boundary. The halves of inlet i are half(offset(i):offset(i+1)-1). A
+  !> node where rains or fluxes of several boundaries meet has an inlet of each; the last one rules
+  !> it, and every rain there has its limit.
   type :: inlets_t
     integer, allocatable :: node(:)      !! boundary node of each inlet, ascending, (m)
     integer, allocatable :: kind(:)      !! one of inlet_*, (m)
@@ -54,10 +56,18 @@ module talus_conditions
     type(inlets_t) :: inlets
   end type conditions_t
 
-  !> Inlets while boundaries are laid over each other: one entry a node.
+  !> A water condition on a set.
+  type :: layer_t
+    integer :: set      !! its number
+    integer :: kind     !! one of inlet_*
+    integer :: rain     !! number of its rain, 0 for none
+    real(dp) :: value   !! head [m], inward flux [m/s] or greatest pressure [Pa]
+  end type layer_t
+
+  !> Inlets while boundaries are laid over each other.
   type :: inlet_paint_t
-    integer, allocatable :: kind(:), rain(:), set(:), place(:)
-    real(dp), allocatable :: value(:)
+    type(layer_t), allocatable :: layer(:) !! in the order that they were laid in
+    integer, allocatable :: last(:)        !! layer laid last over each node, 0 for none, (n)
   end type inlet_paint_t
 
 contains
@@ -204,17 +214,12 @@ contains
     type(inlet_paint_t), intent(out) :: paint
     integer, intent(in) :: n !! nodes
 
-    allocate (paint%kind(n), paint%rain(n), paint%set(n), paint%place(n))
-    allocate (paint%value(n))
-    paint%kind = inlet_none
-    paint%rain = 0
-    paint%set = 0
-    paint%place = 0
-    paint%value = 0.0_dp
+    allocate (paint%layer(0))
+    allocate (paint%last(n), source=0)
   end subroutine inlets_start
 
-  !> Lay a water condition over the nodes of a set; it replaces what was there. Inside the body only
-  !> a head makes sense: water enters and leaves through the boundary.
+  !> Lay a water condition over the nodes and edges of a set; it replaces what was there. Inside the
+  !> body only a head makes sense: water enters and leaves through the boundary.
   pure subroutine inlets_paint(paint, set, number, kind, value, rain)
     type(inlet_paint_t), intent(inout) :: paint
     type(boundary_set_t), intent(in) :: set
@@ -224,44 +229,110 @@ contains
     integer, intent(in) :: rain    !! number of its rain, 0 for none
     integer :: i
 
+    paint%layer = [paint%layer, layer_t(number, kind, rain, value)]
     do i = 1, size(set%node)
       if (any(kind == [inlet_flux, inlet_rain, inlet_seepage]) .and. &
           set%half_offset(i+1) == set%half_offset(i)) cycle
-      paint%kind(set%node(i)) = kind
-      paint%value(set%node(i)) = value
-      paint%rain(set%node(i)) = rain
-      paint%set(set%node(i)) = number
-      paint%place(set%node(i)) = i
+      paint%last(set%node(i)) = size(paint%layer)
     end do
   end subroutine inlets_paint
 
-  !> Inlets of all painted nodes.
+  !> Inlets of all painted nodes. Every half brings the water of the layer that was laid over it
+  !> last, so that rain is whole where two boundaries meet.
   pure subroutine inlets_finish(inlets, paint, sets, rains)
     type(inlets_t), intent(out) :: inlets
     type(inlet_paint_t), intent(in) :: paint
     type(boundary_set_t), intent(in) :: sets(:)
     type(rain_t), intent(in) :: rains(:)
-    integer :: i, j, m, first, last
+    integer, allocatable :: place(:,:) !! of a node in the set of a layer, 0 for none
+    integer, allocatable :: holder(:)  !! layer laid last over each half
+    integer, allocatable :: layer(:), ruler(:) !! of each inlet: its own, and that of its node
+    integer, allocatable :: layers(:)
+    integer :: i, k, m
 
-    inlets%node = pack([(i, i=1, size(paint%kind))], paint%kind /= inlet_none)
-    inlets%kind = paint%kind(inlets%node)
-    inlets%value = paint%value(inlets%node)
-    inlets%rain = paint%rain(inlets%node)
-    inlets%rains = rains
-    m = size(inlets%node)
-    allocate (inlets%offset(m+1))
-    inlets%offset(1) = 1
-    allocate (inlets%half(0))
-    do i = 1, m
-      j = paint%place(inlets%node(i))
-      associate (set => sets(paint%set(inlets%node(i))))
-        first = set%half_offset(j)
-        last = set%half_offset(j+1) - 1
-        inlets%half = [inlets%half, set%half(first:last)]
+    allocate (place(size(paint%last), size(paint%layer)), source=0)
+    allocate (holder(maxval([(maxval(sets(paint%layer(k)%set)%half), k=1, size(paint%layer))])))
+    do k = 1, size(paint%layer)
+      associate (set => sets(paint%layer(k)%set))
+        place(set%node, k) = [(i, i=1, size(set%node))]
+        holder(set%half) = k
       end associate
-      inlets%offset(i+1) = inlets%offset(i) + last - first + 1
     end do
+    m = count(place > 0)
+    allocate (inlets%node(m), layer(m), ruler(m), inlets%offset(m+1), inlets%half(0))
+    inlets%offset(1) = 1
+    m = 0
+    do i = 1, size(paint%last)
+      layers = node_layers(i)
+      do k = 1, size(layers)
+        m = m + 1
+        inlets%node(m) = i
+        layer(m) = layers(k)
+        ruler(m) = layers(size(layers))
+        inlets%half = [inlets%half, halves(i, layers(k))]
+        inlets%offset(m+1) = size(inlets%half) + 1
+      end do
+    end do
+    inlets%node = inlets%node(:m)
+    inlets%offset = inlets%offset(:m+1)
+    inlets%kind = paint%layer(layer(:m))%kind
+    inlets%rain = paint%layer(layer(:m))%rain
+    inlets%value = merge(paint%layer(ruler(:m))%value, paint%layer(layer(:m))%value, &
+                         inlets%kind == inlet_rain)
+    inlets%rains = rains
+
+  contains
+
+    !> Halves of a node that a layer holds.
+    pure function halves(i, k)
+      integer, intent(in) :: i, k
+      integer, allocatable :: halves(:)
+
+      allocate (halves(0))
+      if (place(i, k) == 0) return
+      associate (set => sets(paint%layer(k)%set), j => place(i, k))
+        halves = set%half(set%half_offset(j):set%half_offset(j+1) - 1)
+      end associate
+      halves = pack(halves, holder(halves) == k)
+    end function halves
+
+    !> Layers that make inlets of a node, the one that rules it last. That is the one laid last; but
+    !> an impermeable one leaves it to the water of the other halves, and a flux to their rain,
+    !> which has a limit. A head takes what it needs, whatever rains on it.
+    pure function node_layers(i) result(layers)
+      integer, intent(in) :: i
+      integer, allocatable :: layers(:)
+      integer :: k, rules
+
+      allocate (layers(0))
+      rules = paint%last(i)
+      if (rules == 0) return
+      do k = 1, paint%last(i)
+        associate (kind => paint%layer(k)%kind)
+          if (all(kind /= [inlet_flux, inlet_rain]) .or. size(halves(i, k)) == 0) cycle
+          layers = [layers, k]
+          if (paint%layer(rules)%kind == inlet_none .or. &
+              (paint%layer(rules)%kind == inlet_flux .and. kind == inlet_rain)) rules = k
+        end associate
+      end do
+      select case (paint%layer(rules)%kind)
+      case (inlet_none)
+        layers = layers(:0)
+      case (inlet_head)
+        layers = [rules]
+      case default
+        layers = [pack(layers, layers /= rules), rules]
+      end select
+    end function node_layers
   end subroutine inlets_finish
+
+  !> Whether an inlet rules its node, as the last one there.
+  pure logical function inlets_rules(inlets, k) result(rules)
+    type(inlets_t), intent(in) :: inlets
+    integer, intent(in) :: k !! the inlet
+
+    rules = all(inlets%node(k+1:min(k+1, size(inlets%node))) /= inlets%node(k))
+  end function inlets_rules
 
   !> Boundary length of each inlet in the present shape [m]: horizontal and facing up where it
   !> rains, so that rain stays rain per horizontal metre; full length for a flux.

@@ -8,7 +8,8 @@ module talus_inlet_step
   use talus_ground, only: ground_t
   use talus_state, only: state_t, water_balance_t
   use talus_sum, only: sum_add
-  use talus_conditions, only: inlets_t, inlet_head, inlet_flux, inlet_rain, inlet_seepage
+  use talus_conditions, only: inlets_t, inlets_rules, inlet_head, inlet_flux, inlet_rain, &
+    inlet_seepage
   use talus_rain, only: rain_total
   use talus_cell_water, only: cell_content, cell_invert
   implicit none
@@ -26,12 +27,13 @@ contains
     type(ground_t), intent(in) :: ground
     real(dp), intent(in) :: time, step !! of the sub-step [s]
     type(state_t), intent(inout) :: state
-    real(dp) :: depth(size(inlets%rains))
+    real(dp) :: depth(size(inlets%rains)), volume
     integer :: i, k
 
     do i = 1, size(depth)
       depth(i) = rain_total(inlets%rains(i), time, time + step)
     end do
+    volume = 0.0_dp
     do k = 1, size(inlets%node)
       i = inlets%node(k)
       associate (area => disc%dual%area(i), balance => state%water)
@@ -41,10 +43,11 @@ contains
           call book(balance, inlets%value(k)*catch(k)*step)
         case (inlet_head)
           call set_pressure(i, ground%unit_weight*(inlets%value(k) - height(i)))
-        case (inlet_rain)
-          call rain_in(i, inlets%value(k), depth(inlets%rain(k))*catch(k))
-        case (inlet_seepage)
-          call rain_in(i, inlets%value(k), 0.0_dp)
+        case (inlet_rain, inlet_seepage)
+          if (inlets%kind(k) == inlet_rain) volume = volume + depth(inlets%rain(k))*catch(k)
+          if (.not. inlets_rules(inlets, k)) cycle
+          call rain_in(i, inlets%value(k), volume)
+          volume = 0.0_dp
         end select
       end associate
     end do

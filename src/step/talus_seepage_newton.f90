@@ -15,7 +15,7 @@ module talus_seepage_newton
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_conditions, only: inlets_t, inlet_head, inlet_rain, inlet_seepage
+  use talus_conditions, only: inlets_t, inlets_rules, inlet_head, inlet_rain, inlet_seepage
   use talus_storage, only: storage_capacity
   use talus_water_curve, only: curve_at_pressure
   use talus_darcy, only: seepage_t, face_fluxes, cell_outflow
@@ -239,6 +239,7 @@ contains
     switched = .false.
     do k = 1, size(inlets%node)
       if (inlets%kind(k) /= inlet_rain .and. inlets%kind(k) /= inlet_seepage) cycle
+      if (.not. inlets_rules(inlets, k)) cycle
       associate (i => inlets%node(k))
         if (seepage%held(i)) then
           if (newton%residual(i) <= 0.0_dp .or. .not. may_release) cycle

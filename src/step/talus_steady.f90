@@ -156,15 +156,14 @@ contains
     type(inlets_t), intent(inout) :: inlets
     integer, intent(in) :: node
     real(dp), intent(in) :: head !! [m]
-    integer :: k, m
+    integer :: m
 
     m = size(inlets%node)
-    do k = 1, m
-      if (inlets%node(k) /= node) cycle
-      inlets%kind(k) = inlet_head
-      inlets%value(k) = head
-      return
-    end do
+    where (inlets%node == node)
+      inlets%kind = inlet_head
+      inlets%value = head
+    end where
+    if (any(inlets%node == node)) return
     inlets%node = [inlets%node, node]
     inlets%kind = [inlets%kind, inlet_head]
     inlets%value = [inlets%value, head]

@@ -56,11 +56,27 @@ contains
           state%potential(i), state%capacity(i))
         ! The inverse has the round-off of the storage; still water is to stay still.
         state%pressure(i) = pressure(i)
-        state%suction(i) = -pressure(i)
-        if (ground%law(soil)%stress == stress_net) state%suction(i) = max(-pressure(i), 0.0_dp)
+        state%suction(i) = seen_suction(ground, soil, -pressure(i), state%saturation(i))
       end associate
     end do
   end subroutine initial_water
+
+  !> Suction that the stress has seen: s of net stress where it is one, chi s of Bishop's [Pa].
+  pure real(dp) function seen_suction(ground, soil, suction, saturation) result(seen)
+    type(ground_t), intent(in) :: ground
+    integer, intent(in) :: soil
+    real(dp), intent(in) :: suction    !! s = -p_w [Pa]
+    real(dp), intent(in) :: saturation !! S_r [-]
+
+    if (ground%law(soil)%stress == stress_net) then
+      seen = max(suction, 0.0_dp)
+    else
+      associate (curve => ground%curve(soil))
+        seen = suction*bishop_factor(suction, &
+                                     (saturation - curve%residual)/(curve%maximum - curve%residual))
+      end associate
+    end if
+  end function seen_suction
 
   !> Stress from the weight above each node, taken with the node's own unit weight, and a ratio of
   !> horizontal to vertical stress.

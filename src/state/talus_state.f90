@@ -56,7 +56,8 @@ module talus_state
     real(dp), allocatable :: ratio(:)           !! k_r, (n)
     real(dp), allocatable :: potential(:)       !! Phi [Pa], (n)
     real(dp), allocatable :: capacity(:)        !! dw/dp [1/Pa], (n)
-    real(dp), allocatable :: suction(:)         !! that the stress has seen [Pa], (n)
+    real(dp), allocatable :: suction(:)         !! that the stress has seen [Pa], (n):
+                                                !! s of net stress, chi s of Bishop's
     real(dp), allocatable :: give(:)            !! water that wider pores take up [1/Pa], (n)
     real(dp), allocatable :: anchor(:)          !! pressure of the shape as it is [Pa], (n)
     real(dp), allocatable :: water_work(:)      !! on pore pressure or swelling [J/m3], (n)

@@ -13,7 +13,7 @@ module talus_stress_update
   use talus_points, only: soil_points, points_take, points_put, points_alike
   use talus_objective, only: strain_advance, piola_stresses
   use talus_soil_law, only: soil_law_t, soil_trial, soil_excess, soil_returns, &
-    soil_ok, history_eqps, history_damage, history_size, &
+    soil_ok, soil_inverted, history_eqps, history_damage, history_size, &
     stress_bishop, stress_net
   use talus_elastic, only: elastic_energies
   use talus_damage, only: driver_none, damage_parts
@@ -37,14 +37,15 @@ contains
     type(state_t), intent(inout) :: state
     real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress [N m/m], (4,n)
     integer, intent(inout) :: failed
-    integer :: first, last, start, alike, i
+    integer :: first, last, start, alike, i, ierr
 
     !$omp do schedule(static) reduction(max:failed)
     do start = 1, disc%n, soil_points
       last = min(disc%n, start + soil_points - 1)
       if (allocated(state%f_drive)) then
         do i = start, last
-          call advance_drive(drive(:, i), state%f_drive(:, i), state%strain(:, i))
+          call advance_drive(drive(:, i), state%f_drive(:, i), state%strain(:, i), ierr)
+          if (ierr /= 0) failed = max(failed, soil_inverted*disc%n + i)
         end do
       end if
       first = start
@@ -59,11 +60,11 @@ contains
   end subroutine stress_update
 
   !> Strain history that a smoothed gradient drives.
-  pure subroutine advance_drive(h, f, strain)
+  pure subroutine advance_drive(h, f, strain, ierr)
     real(dp), intent(in) :: h(4)
     real(dp), intent(inout) :: f(4), strain(4)
+    integer, intent(out) :: ierr !! 0, or 1 when a determinant is not positive
     real(dp) :: f_new(4)
-    integer :: ierr
 
     f_new = [1.0_dp + h(1), h(2), h(3), 1.0_dp + h(4)]
     call strain_advance(f, f_new, strain, ierr)
@@ -254,8 +255,9 @@ contains
     over_range = 1.0_dp/(ground%curve(soil)%maximum - ground%curve(soil)%residual)
     suction(:n) = -state%pressure(first:last)
     saturation(:n) = (state%saturation(first:last) - ground%curve(soil)%residual)*over_range
-    if (ground%law(soil)%stress == stress_net) suction(:n) = max(suction(:n), 0.0_dp)
-    state%suction(first:first+n-1) = suction(:n)
+    if (ground%law(soil)%stress /= stress_net) return
+    suction(:n) = max(suction(:n), 0.0_dp)
+    state%suction(first:last) = suction(:n)
   end subroutine water_block
 
   !> Trace of the damaged stress of a block before the step [Pa]; turning does not change it.
@@ -279,23 +281,24 @@ contains
     det_old, det_new, trace_old, state, stress)
     type(ground_t), intent(in) :: ground
     integer, intent(in) :: soil, first, n
-    real(dp), dimension(soil_points), intent(in) :: suction_old, suction !! [Pa]
+    real(dp), intent(in) :: suction_old(soil_points) !! that the stress saw before [Pa]
+    real(dp), intent(in) :: suction(soil_points)     !! s = -p_w after [Pa]
     real(dp), intent(in) :: saturation(soil_points)                      !! effective [-]
     real(dp), dimension(soil_points), intent(in) :: det_old, det_new     !! J before and after [-]
     real(dp), intent(in) :: trace_old(soil_points)    !! of damaged_traces; set with swelling only
     type(state_t), intent(inout) :: state
     real(dp), intent(inout) :: stress(soil_points,4)  !! damaged in, total out [Pa]
-    real(dp) :: part, pull
+    real(dp) :: pull
     integer :: i, j
 
     associate (law => ground%law(soil))
       if (law%stress == stress_bishop) then
         do j = 1, n
           i = first + j - 1
-          part = merge(saturation(j), 1.0_dp, suction(j) > 0.0_dp)
+          pull = merge(saturation(j), 1.0_dp, suction(j) > 0.0_dp)*suction(j)
           state%water_work(i) = state%water_work(i) &
-            + part*0.5_dp*(suction_old(j) + suction(j))*(det_new(j) - det_old(j))
-          pull = part*suction(j)
+            + 0.5_dp*(suction_old(j) + pull)*(det_new(j) - det_old(j))
+          state%suction(i) = pull
           stress(j, 1) = stress(j, 1) + pull
           stress(j, 2) = stress(j, 2) + pull
           stress(j, 3) = stress(j, 3) + pull

@@ -6,7 +6,9 @@ module talus_stage_parts
   use talus_status, only: status_t, status_set, status_numeric
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
+  use talus_state, only: state_t
   use talus_session, only: session_t
+  use talus_soil_step, only: soil_force
   use talus_initial, only: weight_masses, weight_load
   use talus_seepage, only: seepage_shape, seepage_advance
   use talus_audit, only: audit_load
@@ -15,8 +17,8 @@ module talus_stage_parts
   use talus_timer, only: timer_start, timer_stop
   implicit none
   private
-  public :: take_load, move_water, take_back, is_due, put_off, snapshot_interval, report_broken, &
-    node_text
+  public :: take_load, move_water, take_back, feel_supports, is_due, put_off, snapshot_interval, &
+    report_broken, node_text
 
 contains
 
@@ -54,6 +56,19 @@ contains
     session%state%steps = steps
     session%state%seepage_steps = seepage_steps
   end subroutine take_back
+
+  !> The forces of the state as it is, for the reactions of the next line, where those at hand are of
+  !> a trial that was taken back, or none. The state is not touched.
+  subroutine feel_supports(session)
+    type(session_t), intent(inout) :: session
+    type(state_t) :: state
+    integer :: failed
+
+    if (.not. session%soil_moves) return
+    state = session%state
+    call soil_force(session%disc, session%ground, session%motion%coupled, state, session%work, &
+      failed)
+  end subroutine feel_supports
 
   !> True when a time is reached, but for round-off.
   pure logical function is_due(time, due)

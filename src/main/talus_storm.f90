@@ -6,15 +6,13 @@ module talus_storm
   use talus_status, only: status_t, status_failed
   use talus_text, only: text_of
   use talus_deck_types, only: stage_t, deck_given
-  use talus_state, only: state_t
   use talus_session, only: session_t
   use talus_relax, only: relax_t, relax, motion_prepare, relax_balanced, relax_broken
   use talus_coupling, only: coupling_t, coupling_start, coupling_give, coupling_take, &
     coupling_left, coupling_done, coupling_turns
   use talus_soil_law, only: soil_inverted, plasticity_none
-  use talus_soil_step, only: soil_force
   use talus_stage_parts, only: take_load, move_water, take_back, is_due, put_off, &
-    snapshot_interval, report_broken
+    snapshot_interval, report_broken, feel_supports
   use talus_record, only: record_line, record_snapshot
   use talus_progress, only: progress_say
   use talus_timer, only: timer_start, timer_stop
@@ -101,7 +99,8 @@ contains
     call prepare()
     call find_balance(session, stage, 0.0_dp, stands, status)
     session%motion%coupled = .false.
-    call prepare()
+    ! A shape that broke tells nothing of the step; it is taken back.
+    if (stands) call prepare()
 
   contains
 
@@ -128,19 +127,6 @@ contains
     call progress_say(session%progress, 'equilibrium lost after '// &
       text_of(session%last_good%time/3600.0_dp)//' h')
   end subroutine lose_balance
-
-  !> The forces of the state as it is, for the reactions of the next line; those at hand are of the
-  !> trial that was taken back. The state is not touched.
-  subroutine feel_supports(session)
-    type(session_t), intent(inout) :: session
-    type(state_t) :: state
-    integer :: failed
-
-    if (.not. session%soil_moves) return
-    state = session%state
-    call soil_force(session%disc, session%ground, session%motion%coupled, state, session%work, &
-      failed)
-  end subroutine feel_supports
 
   !> One step of the storm clock. `stands` tells whether the soil is in equilibrium after it.
   subroutine storm_step(session, stage, step, stands, status)

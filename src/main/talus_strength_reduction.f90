@@ -13,7 +13,7 @@ module talus_strength_reduction
   use talus_relax, only: relax_t, relax, relax_balanced, relax_broken
   use talus_soil_law, only: soil_inverted
   use talus_record, only: record_line, record_snapshot, record_named
-  use talus_stage_parts, only: take_back
+  use talus_stage_parts, only: take_back, feel_supports
   use talus_progress, only: progress_say
   implicit none
   private
@@ -23,12 +23,15 @@ module talus_strength_reduction
   real(dp), parameter :: stride = 1.25_dp
   !> Factors beyond which the search ends.
   real(dp), parameter :: least = 0.01_dp, most = 100.0_dp
-  !> Displacement that counts as failure, over that of elastic soil under its weight.
-  real(dp), parameter :: failure_share = 4.0_dp
+  !> Displacement that counts as failure, over the settlement of elastic soil: far past it in stiff
+  !> soil, and at least as much as soft soil moves when strength is taken from it.
+  real(dp), parameter :: share_stiff = 4.0_dp, share_soft = 0.6_dp
+  !> The same over the mean depth, between the two: more changes the shape.
+  real(dp), parameter :: share_depth = 0.02_dp
 
 contains
 
-  !> Bracket the factor. The stage ends in the state in which it began.
+  !> Bracket the factor. The stage ends in the state in which it began, in motion where it moved.
   subroutine strength_reduction(session, stage, failed, status)
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
@@ -61,9 +64,12 @@ contains
     if (found%upper > 0.0_dp) then
       call progress_say(session%progress, 'equilibrium lost with strength divided by '// &
         text_of(found%upper, 4))
-      call record_named(session, mechanism_name(size(session%reduction)), mechanism, status)
     end if
+    call feel_supports(session)
+    ! The state first: viewers show the first of two snapshots of one time.
     call record_snapshot(session, status)
+    if (found%upper > 0.0_dp) &
+      call record_named(session, mechanism_name(size(session%reduction)), mechanism, status)
   end subroutine strength_reduction
 
   !> Relax with the strength divided by session%factor.
@@ -78,6 +84,9 @@ contains
     failed = 0
     motion = session%motion
     session%motion%viscous = 0.0_dp
+    session%state%v = 0.0_dp
+    session%state%acceleration = 0.0_dp
+    session%state%ahead = 0.0_dp
     call relax(session%disc, reduced_ground(session%ground, session%factor), session%conditions, &
                session%motion, stage%tolerance, stage%steps_max, found%moved_max, 0.0_dp, &
                session%state, session%work, outcome)
@@ -97,23 +106,25 @@ contains
         (outcome%failed - 1)/session%disc%n /= soil_inverted) failed = outcome%failed
   end subroutine try_factor
 
-  !> Displacement that counts as failure [m]: the deck's, or a few times g D^2/E with unit weight g,
-  !> mean depth D and modulus E. Equilibrium is lost in the shape that the soil has now; a slide
-  !> that went further might come to rest in a flatter one.
+  !> Displacement that counts as failure [m]: the deck's, or a few times s = g D^2/E with unit weight
+  !> g, mean depth D and modulus E, and where that is much, a small part of D, or of s in soft soil.
+  !> Equilibrium is lost in the shape that the soil has now; a slide that went further might come to
+  !> rest in a flatter one.
   real(dp) function failure_displacement(session, stage) result(displacement)
     type(session_t), intent(in) :: session
     type(stage_t), intent(in) :: stage
-    real(dp) :: weight, area, compliance, width
+    real(dp) :: weight, area, compliance, depth, settlement
 
     displacement = stage%failure_displacement
     if (deck_given(displacement)) return
     associate (disc => session%disc, law => session%ground%law)
       area = sum(disc%dual%area)
-      width = maxval(disc%mesh%x(1, :)) - minval(disc%mesh%x(1, :))
+      depth = area/(maxval(disc%mesh%x(1, :)) - minval(disc%mesh%x(1, :)))
       weight = session%ground%gravity*sum(session%state%mass)/area
       compliance = sum(disc%dual%area/law(disc%soil)%elastic%youngs_modulus)/area
-      displacement = failure_share*weight*compliance*(area/width)**2
     end associate
+    settlement = weight*compliance*depth**2
+    displacement = min(share_stiff*settlement, max(share_depth*depth, share_soft*settlement))
     if (.not. displacement > 0.0_dp) displacement = huge(1.0_dp)
   end function failure_displacement
 

@@ -12,7 +12,8 @@ module talus_dynamic
   use talus_relax, only: motion_shorten
   use talus_seepage, only: face_fluxes, seepage_step_limit
   use talus_audit, only: audit_driven
-  use talus_stage_parts, only: take_load, move_water, put_off, snapshot_interval, report_broken
+  use talus_stage_parts, only: take_load, move_water, is_due, put_off, snapshot_interval, &
+    report_broken
   use talus_record, only: record_line, record_snapshot, record_last_good
   use talus_timer, only: timer_start, timer_stop
   implicit none
@@ -75,7 +76,7 @@ contains
       done = done + session%motion%step
       since_water = since_water + session%motion%step
       session%state%time = session%state%time + session%motion%step
-      over = done >= stage%duration
+      over = is_due(done, stage%duration)
       due = over .or. done >= min(next_line, next_snapshot)
       if (due .and. .not. over) over = done > rest_share*stage%duration .and. &
         sqrt(maxval(sum(session%state%v**2, dim=1))) < stage%rest_velocity

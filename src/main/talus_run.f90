@@ -23,6 +23,7 @@ module talus_run
   use talus_cost, only: snapshots_of
   use talus_history, only: history_store, history_close
   use talus_record, only: record_start
+  use talus_stage_parts, only: feel_supports
   use talus_stages, only: stage_run
   use talus_report, only: report_summary
   use talus_timer, only: timer_start, timer_stop
@@ -67,6 +68,7 @@ contains
     if (status_failed(status)) return
     if (len(deck%initial%from_result) > 0) then
       call setup_restart(session, status)
+      if (.not. status_failed(status)) call feel_supports(session)
     else
       call start_state(session, status)
     end if

@@ -3,6 +3,7 @@
 module talus_setup_conditions
   use talus_kinds, only: dp
   use talus_status, only: status_t, status_failed
+  use talus_text, only: text_of
   use talus_deck_types, only: deck_t, boundary_t, deck_given, deck_held, deck_acts_in
   use talus_deck_messages, only: messages_t, messages_start, messages_error, messages_status
   use talus_disc, only: disc_t
@@ -55,7 +56,13 @@ contains
             needs_edges(boundary)//' would act on nothing; allowed: a part with an edge of the mesh')
           cycle
         end if
-        call add_supports(boundary, sets(i), conditions)
+        if (deck_given(boundary%floor)) then
+          if (.not. any(disc%mesh%x(2, sets(i)%node) > boundary%floor)) &
+            call messages_error(messages, boundary%where_line, '&boundary floor = '// &
+              text_of(boundary%floor)//': no node of where = '''//boundary%where// &
+              ''' begins above it; allowed: a floor below some of them')
+        end if
+        call add_supports(boundary, sets(i), disc%mesh%x, conditions)
         call conditions_load(conditions, sets(i), [boundary%traction_x, boundary%traction_y], &
                              boundary%pressure)
         call add_water(boundary, sets(i), i, rains(i), paint, status)
@@ -104,9 +111,10 @@ contains
   end subroutine setup_steady
 
   !> Held and driven directions.
-  subroutine add_supports(boundary, set, conditions)
+  subroutine add_supports(boundary, set, x, conditions)
     type(boundary_t), intent(in) :: boundary
     type(boundary_set_t), intent(in) :: set
+    real(dp), intent(in) :: x(:,:) !! reference places [m], (2,n)
     type(conditions_t), intent(inout) :: conditions
 
     if (boundary%displacement == 'fixed' .or. boundary%displacement == 'roller_x') &
@@ -119,7 +127,8 @@ contains
       call conditions_hold(conditions, set, 2, boundary%velocity_y)
     if (size(boundary%velocity_gradient) == 4) call conditions_deform(conditions, set, &
       boundary%velocity_gradient, [boundary%centre_x, boundary%centre_y])
-    if (deck_given(boundary%floor)) call conditions_floor(conditions, set, boundary%floor)
+    if (deck_given(boundary%floor)) call conditions_floor(conditions, set, x, &
+      boundary%floor)
     if (len(boundary%name) > 0 .and. any(deck_held(boundary))) &
       call conditions_support(conditions, set, boundary%name, deck_held(boundary))
   end subroutine add_supports

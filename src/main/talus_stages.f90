@@ -11,6 +11,7 @@ module talus_stages
   use talus_setup_conditions, only: setup_conditions
   use talus_soil_step, only: soil_leave_rest
   use talus_relax, only: motion_prepare
+  use talus_floor, only: floor_hold
   use talus_seepage, only: seepage_shape
   use talus_coupling, only: coupling_needed
   use talus_audit, only: audit_energies, audit_stored_water
@@ -28,6 +29,8 @@ module talus_stages
 
   !> A change of load between stages that is more than round-off and drizzle, over the load.
   real(dp), parameter :: load_share = 1.0e-4_dp
+  !> Steps of a dynamic stage below which its end matters.
+  real(dp), parameter :: few_steps = 100.0_dp
 
 contains
 
@@ -92,8 +95,12 @@ contains
         call take_load(session)
         session%new_load = any(abs(before) > 0.0_dp) .and. &
           maxval(abs(state%load - before)) > load_share*maxval(abs(state%load))
+        if (allocated(session%conditions%floor) .and. stage%kind /= 'dynamic') &
+          call floor_hold(disc%mesh%x + state%u, session%conditions)
         call motion_prepare(disc, session%ground, session%conditions, state, stage%mass_scaling, &
                             stage%step_safety, session%motion, session%work)
+        if (stage%kind == 'dynamic') session%motion%step = fitting_step(session%motion%step, &
+                                                                       stage%duration)
         call start_motion(session, stage)
         session%energies_start = audit_energies(disc, session%ground, session%motion, state)
         if (len(session%declared) > 0) session%declared = session%declared//'; '
@@ -101,6 +108,9 @@ contains
           trim(merge('on ', 'off', stage%mass_scaling))//', '//stage%mass// &
           ' mass, local damping '// &
           text_of(stage%damping)
+      else if (allocated(session%motion%mobility)) then
+        ! The soil rests, and keeps its energies.
+        session%energies_start = audit_energies(disc, session%ground, session%motion, state)
       end if
       if (stage%solve /= 'soil') then
         session%seepage%explicit_only = stage%water_step == 'explicit'
@@ -111,14 +121,24 @@ contains
     session%last_good = session%state
   end subroutine stage_begin
 
+  !> A step that ends a dynamic stage of few steps on time; one of many may overrun by its last.
+  pure real(dp) function fitting_step(step, duration) result(fitting)
+    real(dp), intent(in) :: step, duration !! [s]
+
+    fitting = step
+    if (step > duration/few_steps) fitting = duration/real(ceiling(duration/step), dp)
+  end function fitting_step
+
   !> Velocities at the start of a stage: real motion goes on from one dynamic stage to the next, all
-  !> else starts at rest; prescribed velocities hold at once.
+  !> else starts at rest, the trials of a strength reduction too, which ends as it began; prescribed
+  !> velocities hold at once.
   subroutine start_motion(session, stage)
     type(session_t), intent(inout) :: session
     type(stage_t), intent(in) :: stage
     real(dp) :: before
     integer :: failed
 
+    if (stage%kind == 'strength_reduction') return
     associate (state => session%state, conditions => session%conditions)
       before = state%ahead
       state%ahead = 0.0_dp

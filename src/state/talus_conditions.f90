@@ -180,19 +180,22 @@ contains
     end do
   end subroutine conditions_follow
 
-  !> Let the nodes of a set land on a floor.
-  pure subroutine conditions_floor(conditions, set, level)
+  !> Let the nodes of a set land on a floor: those that begin above it.
+  pure subroutine conditions_floor(conditions, set, x, level)
     type(conditions_t), intent(inout) :: conditions
     type(boundary_set_t), intent(in) :: set
-    real(dp), intent(in) :: level !! elevation y [m]
+    real(dp), intent(in) :: x(:,:) !! reference places [m], (2,n)
+    real(dp), intent(in) :: level  !! elevation y [m]
+    integer, allocatable :: node(:)
     integer :: i
 
     if (.not. allocated(conditions%floor)) then
       allocate (conditions%floor)
       allocate (conditions%floor%node(0), conditions%floor%level(0))
     end if
-    conditions%floor%node = [conditions%floor%node, set%node]
-    conditions%floor%level = [conditions%floor%level, (level, i=1, size(set%node))]
+    node = pack(set%node, x(2, set%node) > level)
+    conditions%floor%node = [conditions%floor%node, node]
+    conditions%floor%level = [conditions%floor%level, (level, i=1, size(node))]
   end subroutine conditions_floor
 
   !> Add tractions to the nodes of a set.

@@ -2,12 +2,12 @@
 !> A rigid, rough floor that soil comes down to while it moves (src/THEORY.md section 5.7).
 module talus_floor
   use talus_kinds, only: dp
-  use talus_conditions, only: floor_t
+  use talus_conditions, only: conditions_t, floor_t
   use talus_state, only: state_t
   use talus_soil_step, only: motion_t
   implicit none
   private
-  public :: floor_land
+  public :: floor_land, floor_hold
 
 contains
 
@@ -32,6 +32,20 @@ contains
       state%acceleration(:, i) = 0.0_dp
     end do
   end subroutine floor_land
+
+  !> Hold the nodes that lie on the floor, in a stage whose motion is no real one.
+  pure subroutine floor_hold(place, conditions)
+    real(dp), intent(in) :: place(:,:) !! present places [m], (2,n)
+    type(conditions_t), intent(inout) :: conditions
+    integer :: i, k
+
+    do k = 1, size(conditions%floor%node)
+      i = conditions%floor%node(k)
+      if (place(2, i) > conditions%floor%level(k)) cycle
+      where (.not. conditions%held(:, i)) conditions%given(:, i) = 0.0_dp
+      conditions%held(:, i) = .true.
+    end do
+  end subroutine floor_hold
 
   !> Kinetic energy (5.5) of a node at the end of a step [J/m], in the directions in which it can
   !> move.

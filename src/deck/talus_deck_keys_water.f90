@@ -101,8 +101,8 @@ contains
     call key(t, 'centre_y', 'real', 'm', '0', '[-1e7, 1e7]', &
              'y of the fixed point of velocity_gradient.')
     call key(t, 'floor', 'real', 'm', '', '[-1e7, 1e7]', &
-             'Elevation y of rigid, rough ground: in a dynamic stage nodes that come down to '// &
-             'it stay there; absent: none.')
+             'Elevation y of rigid, rough ground: nodes that begin above it and come down to it '// &
+             'in a dynamic stage stay there, in later stages of any kind, too; absent: none.')
     call key(t, 'traction_x', 'real', 'Pa', '0', '[-1e10, 1e10]', 'Traction along x.')
     call key(t, 'traction_y', 'real', 'Pa', '0', '[-1e10, 1e10]', &
         'Traction along y, upward positive.')
@@ -173,9 +173,8 @@ contains
              'may be unstable, see `talus check`.', 'kind=storm|dynamic')
     call key(t, 'failure_displacement', 'real', 'm', '', '(0, 1e4]', &
              'Displacement within storm_step, or in a trial of strength reduction, that counts as '// &
-             'failure; absent: in a storm none, else 4 times unit weight, mean depth squared '// &
-             'over '// &
-             'Young''s modulus.', 'kind=storm|strength_reduction')
+             'failure; absent: in a storm none, else by the settlement of elastic soil s and the '// &
+             'mean depth D: min(4 s, max(D/50, 0.6 s)).', 'kind=storm|strength_reduction')
     call key(t, 'after_failure', 'string', '', &
              '~dynamic_next if a dynamic stage follows, else stop', 'dynamic_next|stop', &
              'On failure go on with the next dynamic stage, or stop the run.', 'kind=storm')
@@ -188,7 +187,7 @@ contains
              'Angular velocity about its centre of mass with which the body starts.', &
              'kind=dynamic')
     call key(t, 'reset_displacement', 'logical', '', '~.true. if geostatic, else .false.', '', &
-             'Set displacement and plastic strain to zero at the end of the stage.')
+             'Set displacement and plastic strain to zero at the end of the stage; damage stays.')
     call key(t, 'snapshots', 'integer', '', '10', '[0, 100000]', &
              'Number of snapshots in the stage, besides its start.')
   end subroutine keys_add_stage

@@ -7,7 +7,7 @@ module talus_geostatic
   use talus_deck_types, only: stage_t
   use talus_ground, only: ground_t
   use talus_state, only: state_t
-  use talus_soil_law, only: history_eqps
+  use talus_soil_law, only: history_eqps, history_plastic_work, history_damage_work, history_size
   use talus_session, only: session_t
   use talus_setup_ground, only: ground_intact
   use talus_initial, only: initial_water
@@ -103,7 +103,8 @@ contains
     end associate
   end subroutine keep_settled
 
-  !> Count displacement, strain and the history of the soil from here.
+  !> Count displacement, strain and plastic strain from here. Damage stays: without it the stress
+  !> would jump.
   subroutine reset(session)
     type(session_t), intent(inout) :: session
 
@@ -117,7 +118,10 @@ contains
       if (allocated(state%strain)) state%strain = 0.0_dp
       if (allocated(state%history)) then
         call keep_settled(state)
-        state%history = 0.0_dp
+        state%history(history_eqps, :) = 0.0_dp
+        state%history(history_plastic_work, :) = 0.0_dp
+        if (size(state%history, 1) == history_size) &
+          state%history(history_damage_work, :) = 0.0_dp
       end if
     end associate
   end subroutine reset

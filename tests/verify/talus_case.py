@@ -19,7 +19,7 @@ import h5py
 import numpy as np
 
 # [s], for one run of the program: within the time of a case (run_cases.py), so that the case can say which.
-RUN_LIMIT = 500.0
+RUN_LIMIT = 1000.0
 
 
 class Case:

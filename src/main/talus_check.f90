@@ -11,11 +11,11 @@ module talus_check
   use talus_run, only: run_prepare
   use talus_setup_conditions, only: setup_conditions
   use talus_relax, only: motion_prepare
+  use talus_stage_parts, only: takes_turns
   use talus_soil_step, only: soil_step
   use talus_seepage, only: seepage_shape, seepage_advance, face_fluxes, seepage_step_limit
   use talus_initial, only: weight_load
   use talus_audit, only: audit_load
-  use talus_coupling, only: coupling_needed
   use talus_timer, only: timer_now, timer_seconds
   use talus_cost, only: cost_t, cost_of, snapshots_of, snapshot_bytes, restart_bytes
   use talus_seepage_stable, only: seepage_step_stable
@@ -34,9 +34,8 @@ module talus_check
   real(dp), parameter :: overhead = 1.5_dp
   !> Soil steps of the search for the time of a failure, for each halving of the storm's step.
   real(dp), parameter :: search_steps = 1500.0_dp
-  !> Turns in which water and soil agree on a step of the storm, by experience of five decks: the
-  !> soil took 2 to 6 times the steps of a single turn, the water 4 to 8 times. Loads on saturated
-  !> soil take far more: 23 times in an undrained step, 40 times the water's in Terzaghi's column.
+  !> Turns in which water and soil agree on a step of the storm, by experience; loads on saturated
+  !> soil take far more.
   real(dp), parameter :: typical_turns = 4.0_dp
   !> Output above which a warning tells how to write less.
   real(dp), parameter :: many_snapshots = 1.0e3_dp, many_bytes = 1.0e10_dp
@@ -238,7 +237,7 @@ contains
 
     associate (stage => session%deck%stage(number))
       session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
-        .not. is_joint(session, number)
+        .not. takes_turns(session, stage)
       session%motion%local = stage%damping
       session%motion%consistent = stage%mass == 'consistent'
       call motion_prepare(session%disc, session%ground, session%conditions, session%state, &
@@ -261,23 +260,12 @@ contains
     end associate
   end subroutine print_soil
 
-  !> True where water and soil agree in each step of the storm's clock.
-  pure logical function is_joint(session, number)
-    type(session_t), intent(in) :: session
-    integer, intent(in) :: number
-
-    associate (stage => session%deck%stage(number))
-      is_joint = stage%kind == 'storm' .and. stage%solve == 'both' .and. &
-        coupling_needed(session%ground)
-    end associate
-  end function is_joint
-
   !> How often a step of the storm's clock is solved, about.
   pure real(dp) function turns(session, number)
     type(session_t), intent(in) :: session
     integer, intent(in) :: number
 
-    turns = merge(typical_turns, 1.0_dp, is_joint(session, number))
+    turns = merge(typical_turns, 1.0_dp, takes_turns(session, session%deck%stage(number)))
   end function turns
 
   !> Time of a soil step [s], from a few under load that are taken back.

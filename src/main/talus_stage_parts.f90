@@ -9,6 +9,7 @@ module talus_stage_parts
   use talus_state, only: state_t
   use talus_session, only: session_t
   use talus_soil_step, only: soil_force
+  use talus_coupling, only: coupling_needed
   use talus_initial, only: weight_masses, weight_load
   use talus_seepage, only: seepage_shape, seepage_advance
   use talus_audit, only: audit_load
@@ -17,8 +18,8 @@ module talus_stage_parts
   use talus_timer, only: timer_start, timer_stop
   implicit none
   private
-  public :: take_load, move_water, take_back, feel_supports, is_due, put_off, snapshot_interval, &
-    report_broken, node_text
+  public :: take_load, takes_turns, move_water, take_back, feel_supports, is_due, put_off, &
+    snapshot_interval, report_broken, node_text
 
 contains
 
@@ -30,6 +31,16 @@ contains
     call audit_load(session%disc%n, weight_load(session%ground, session%state%mass, &
                                                 session%conditions%traction), session%state)
   end subroutine take_load
+
+  !> Whether water and soil agree by turns in each step of a stage's clock: in a storm, where pore
+  !> water carries load.
+  pure logical function takes_turns(session, stage)
+    type(session_t), intent(in) :: session
+    type(stage_t), intent(in) :: stage
+
+    takes_turns = stage%kind == 'storm' .and. stage%solve == 'both' .and. &
+      coupling_needed(session%ground)
+  end function takes_turns
 
   !> Move the water for a time, with the soil at rest in its present shape.
   subroutine move_water(session, stage, step)

@@ -13,9 +13,8 @@ module talus_stages
   use talus_relax, only: motion_prepare
   use talus_floor, only: floor_hold
   use talus_seepage, only: seepage_shape
-  use talus_coupling, only: coupling_needed
   use talus_audit, only: audit_energies, audit_stored_water
-  use talus_stage_parts, only: take_load, report_broken
+  use talus_stage_parts, only: take_load, takes_turns, report_broken
   use talus_geostatic, only: run_geostatic, reset
   use talus_storm, only: run_storm
   use talus_dynamic, only: run_dynamic
@@ -87,8 +86,7 @@ contains
         session%motion%local = stage%damping
         session%motion%viscous = 0.0_dp
         session%motion%consistent = stage%mass == 'consistent'
-        session%joint = stage%kind == 'storm' .and. stage%solve == 'both' .and. &
-          coupling_needed(session%ground)
+        session%joint = takes_turns(session, stage)
         session%motion%coupled = session%ground%wet .and. stage%solve == 'both' .and. &
           .not. session%joint
         before = state%load

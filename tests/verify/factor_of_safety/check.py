@@ -224,15 +224,16 @@ case.target(
 tried = down.history()["factor"][down.history()["stage"] == "factor"]
 case.check_true("from above: the first stride goes down", tried[0] == 1.7 and tried[1] < 1.7)
 
-# Soft soil moves further before it fails, which may not pass for strength.
+# Soft soil moves further before it fails, which may not pass for strength. The limits hold what was measured: a
+# displacement by which soft soil fails for certain changes its shape, and with it the factor.
 for softer, limit in ((10, 0.02), (50, 0.05)) if case.full else ():
     for levels in LEVELS:
         soft = factor_of(reduce(f"{softer} times as soft", levels, softer=softer))
-        case.target(
+        case.check(
             f"{levels}, soil {softer} times as soft: change of the factor",
             abs(soft / factor[levels] - 1),
             limit,
-            "equilibrium does not know the modulus; displacements of per cents of the depth change the shape",
+            "held; equilibrium does not know the modulus",
         )
         if softer == 50:
             slid = factor_of(reduce("soft, far", levels, softer=softer, moved=softer * moved))

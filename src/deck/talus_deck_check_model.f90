@@ -139,6 +139,8 @@ contains
       call check_idle('stabilisation_floor')
       if (smoothing%levels /= 2) return
       call check_idle('level_stiffness')
+      call check_idle('elastic_strain')
+      call check_local
       if (smoothing%weights == 'rk' .or. smoothing%weights == 'area') then
         call warn(store, section, 'weights', 'these weights fail the patch test', messages)
       end if
@@ -173,6 +175,19 @@ contains
       if (store%section(section)%value(store_value(store, section, key))%is_given) call warn( &
         store, section, key, 'has no effect with stabilisation = 0', messages)
     end subroutine check_idle
+
+    !> Strain of intact soil is chosen where it cannot be had or is not smoothed.
+    subroutine check_local
+      if (.not. store%section(section)%value(store_value(store, section, 'elastic_strain'))%is_given) &
+        return
+      if (deck%smoothing%acts_on == 'damage_only') then
+        call warn(store, section, 'elastic_strain', 'has no effect with acts_on = ''damage_only''', &
+          messages)
+      else if (deck%smoothing%weights /= 'symmetric') then
+        call warn(store, section, 'elastic_strain', &
+          'has no effect with weights = '''//deck%smoothing%weights//'''', messages)
+      end if
+    end subroutine check_local
 
     !> The plastic strain of a point is its own: smoothing the damage driver alone cannot reach it.
     subroutine check_damage_only

@@ -107,6 +107,7 @@ contains
     call get(store, s, 'length', smoothing%length)
     call get(store, s, 'weights', smoothing%weights)
     call get(store, s, 'acts_on', smoothing%acts_on)
+    call get(store, s, 'elastic_strain', smoothing%elastic_strain)
     call get(store, s, 'stabilisation', smoothing%stabilisation)
     call get(store, s, 'level_stiffness', smoothing%level_stiffness)
     call get(store, s, 'stabilisation_floor', smoothing%stabilisation_floor)

@@ -92,11 +92,15 @@ contains
     call key(t, 'acts_on', 'string', '', 'gradient', 'gradient|damage_only', &
              'What the second level smooths: the gradient itself or only what drives damage.', &
              'levels=2')
+    call key(t, 'elastic_strain', 'string', '', 'local', 'local|smoothed', &
+             'Strain that intact soil resists where the gradient is smoothed: its own, or smoothed like that '// &
+             'of yielding soil, which makes bodies of a few lengths soft; local with symmetric weights and '// &
+             'stabilisation only.', 'levels=2')
     call key(t, 'stabilisation', 'real', '', '0.05', '[0, 1]', &
              'Stiffness of the affine-residual stabilisation as a fraction of the soil''s.')
     call key(t, 'level_stiffness', 'real', '', '0.025', '[0, 1]', &
-             'Stiffness of the difference of both levels of F, as a fraction of Young''s modulus; '// &
-             'none with stabilisation = 0.', 'levels=2')
+             'Stiffness of the difference of both levels of F in yielding or damaged soil, as a fraction '// &
+             'of Young''s modulus; none with stabilisation = 0.', 'levels=2')
     call key(t, 'stabilisation_floor', 'real', '', '0.02', '[0, 1]', &
              'Smallest fraction of the stabilisation left in damaged or yielding soil. Times '// &
              'stabilisation and Young''s modulus it is about the strength that this adds for each '// &

@@ -39,7 +39,7 @@ module talus_deck_types
   type :: smoothing_t
     integer :: levels
     real(dp) :: length
-    character(:), allocatable :: weights, acts_on
+    character(:), allocatable :: weights, acts_on, elastic_strain
     real(dp) :: stabilisation, level_stiffness, stabilisation_floor
   end type smoothing_t
 

@@ -7,6 +7,7 @@ module talus_disc
   use talus_scni, only: scni_t
   use talus_two_level, only: two_level_t
   use talus_stabilise, only: stabilise_t
+  use talus_tie, only: tie_t
   implicit none
   private
   public :: disc_t
@@ -23,5 +24,7 @@ module talus_disc
     logical :: stabilised = .false.
     real(dp) :: floor = 0.0_dp        !! least stiffness left to the stabilisation [-]
     type(stabilise_t) :: stabilise
+    logical :: tied = .false.         !! intact soil feels the first level as well
+    type(tie_t) :: tie
   end type disc_t
 end module talus_disc

@@ -9,7 +9,8 @@ module talus_bench_step
   use talus_session, only: session_t
   use talus_soil_step, only: work_t, motion_t, soil_step
   use talus_strain, only: strain_first, strain_gradient, per_area
-  use talus_smooth, only: smooth_gradient, smooth_stress
+  use talus_smooth, only: smooth_gradient, smooth_stress, smooth_gradient_tied, smooth_stress_tied
+  use talus_tie_step, only: tie_measure, tie_means
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather, residual_gather_levels
   use talus_force, only: force_unbalanced, motion_position, motion_velocity
@@ -42,7 +43,15 @@ contains
     if (disc%two_levels) then
       call strain_first(disc%scni, state%u, work%y)
       call mark(seconds(phase_strain), began)
-      call smooth_gradient(disc%two_level, work%y, work%h)
+      if (disc%tied) then
+        call tie_measure(disc%tie, disc%dual%area, work%y, work%stretch, work%weighed, &
+          stiffness=state%stiffness, intact=state%intact, between=state%between, &
+          between_old=state%between_old)
+        call smooth_gradient_tied(disc%two_level, work%y, work%weighed, work%h, work%mean)
+        call tie_means(work%mean, work%weighed)
+      else
+        call smooth_gradient(disc%two_level, work%y, work%h)
+      end if
       if (disc%stabilised) call per_area(disc%dual%area, work%y)
       call mark(seconds(phase_second), began)
     else
@@ -53,10 +62,15 @@ contains
     call mark(seconds(phase_stress), began)
     if (disc%two_levels) then
       if (disc%stabilised) call residual_gather_levels(disc%stabilise, disc%dual%area, state%u, &
-        work%y, state%stiffness, state%stiffness_old, work%h, work%q, work%stabilising, &
-        state%stabilising, state%stabilising_lost)
+        work%y, state%stiffness, state%stiffness_old, state%between, state%between_old, work%h, &
+        work%q, work%stabilising, state%stabilising, state%stabilising_lost)
       call mark(seconds(phase_stabilise), began)
-      call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
+      if (disc%tied) then
+        call smooth_stress_tied(disc%two_level, disc%tie, disc%dual%area, work%q, work%weighed, &
+          work%stretch, work%h, work%y, state%intact, state%tied, state%stabilising_lost)
+      else
+        call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
+      end if
       call mark(seconds(phase_adjoint), began)
       call force_unbalanced(disc%scni, work%y, state%load, work%stabilising, work%force)
     else

@@ -58,10 +58,11 @@ contains
         + bytes(disc%two_level%adjoint)
       cost%stabilise = bytes(disc%stabilise%offset) + bytes(disc%stabilise%node) &
         + bytes(disc%stabilise%reach) + bytes(disc%stabilise%stiffness) &
-        + bytes(disc%stabilise%level)
+        + bytes(disc%stabilise%level) + bytes(disc%tie%bulk) + bytes(disc%tie%shear)
       ! Strength reduction also keeps the state of its mechanism.
       cost%state = merge(3_i8, 2_i8, allocated(session%reduction))*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &
+        + bytes(work%stretch) + bytes(work%weighed) + bytes(work%mean) &
         + bytes(work%stabilising) + bytes(work%force) + bytes(work%pull) &
         + bytes(session%motion%pair_mass)
       ! What every stage of the soil allocates as it begins: mobility, fastest mode and its place.
@@ -94,9 +95,10 @@ contains
     integer :: numbers
 
     numbers = 0
-    ! Displacement, velocity, stress, strain; plastic strain; damage.
+    ! Displacement, velocity, stress, strain; that which acts; plastic strain; damage.
     if (session%soil_moves) then
       numbers = numbers + 12
+      if (session%disc%two_levels .and. .not. session%disc%damage_only) numbers = numbers + 4
       if (allocated(session%state%history)) numbers = numbers + 1
       if (any(session%ground%law%damage%driver /= 0)) numbers = numbers + 1
     end if
@@ -123,7 +125,8 @@ contains
       + bytes(state%f) + bytes(state%f_drive) + bytes(state%stress) + bytes(state%strain) &
       + bytes(state%history) + bytes(state%stiffness) + bytes(state%stiffness_old) &
       + bytes(state%settled) + bytes(state%stabilising) + bytes(state%stabilising_lost) &
-      + bytes(state%damped) &
+      + bytes(state%intact) + bytes(state%between) &
+      + bytes(state%between_old) + bytes(state%tied) + bytes(state%damped) &
       + bytes(state%mass) + bytes(state%load) + bytes(state%u_load) + bytes(state%jacobian) &
       + bytes(state%content) + bytes(state%pressure) + bytes(state%saturation) &
       + bytes(state%ratio) + bytes(state%potential) + bytes(state%capacity) &

@@ -9,7 +9,7 @@ module talus_record
   use talus_session, only: session_t
   use talus_state, only: state_t
   use talus_soil_law, only: history_eqps, history_damage
-  use talus_fields, only: field_total_stress, field_strain, field_porosity
+  use talus_fields, only: field_total_stress, field_acting_stress, field_strain, field_porosity
   use talus_seepage, only: seepage_velocity
   use talus_audit, only: energies_t, audit_energies, audit_energy_error, audit_stored_water, &
     audit_water_error
@@ -273,6 +273,11 @@ contains
       field = field_total_stress(session%disc, session%ground, state)
       call snapshot_field(result, 'stress', 'Pa', &
         'total Cauchy stress xx, yy, zz, xy, tension positive', field, status)
+      if (session%disc%two_levels .and. .not. session%disc%damage_only) then
+        field = field_acting_stress(session%disc, session%ground, state)
+        call snapshot_field(result, 'stress_acting', 'Pa', &
+          'total Cauchy stress that acts on the nodes, xx, yy, zz, xy, tension positive', field, status)
+      end if
       field = field_strain(session%disc, state)
       call snapshot_field(result, 'strain', '1', &
         'Green-Lagrange strain xx, yy, zz, xy since displacement was last reset', field, status)

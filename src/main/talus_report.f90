@@ -85,6 +85,8 @@ contains
         call summary_set(summary, 'smoothing_length', deck%smoothing%length)
         call summary_set(summary, 'smoothing_weights', deck%smoothing%weights)
         call summary_set(summary, 'smoothing_acts_on', deck%smoothing%acts_on)
+        if (.not. disc%damage_only) call summary_set(summary, 'elastic_strain', &
+          trim(merge('local   ', 'smoothed', disc%tied)))
         call summary_set(summary, 'mean_second_neighbours', &
                          real(size(disc%two_level%cell), dp)/real(disc%n, dp))
       end if

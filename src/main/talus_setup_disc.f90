@@ -19,6 +19,7 @@ module talus_setup_disc
   use talus_scni, only: scni_build, scni_transpose
   use talus_two_level, only: two_level_build, weights_symmetric, weights_rk, weights_area
   use talus_stabilise, only: stabilise_build
+  use talus_tie, only: tie_build
   use talus_disc, only: disc_t
   use talus_timer, only: timer_t, timer_start, timer_stop
   implicit none
@@ -70,6 +71,7 @@ contains
     real(dp), allocatable :: modulus(:)
     integer :: weights
 
+    weights = weights_symmetric
     disc%two_levels = deck%smoothing%levels == 2
     if (disc%two_levels) then
       disc%damage_only = deck%smoothing%acts_on == 'damage_only'
@@ -78,7 +80,6 @@ contains
         text_of(deck%smoothing%length)//': less than three of the mean node spacing '// &
         text_of(sum(spacing)/real(disc%n, dp), 4)//' m; allowed: a longer one, or closer nodes')
       if (status_failed(status)) return
-      weights = weights_symmetric
       if (deck%smoothing%weights == 'rk') weights = weights_rk
       if (deck%smoothing%weights == 'area') weights = weights_area
       call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, deck%smoothing%length, &
@@ -91,6 +92,9 @@ contains
     call stabilise_build(disc%stabilise, disc%mesh%x, disc%dual, modulus, &
                          deck%smoothing%stabilisation, disc%two_levels .and. .not. disc%damage_only, &
                          deck%smoothing%level_stiffness)
+    disc%tied = disc%two_levels .and. .not. disc%damage_only .and. weights == weights_symmetric &
+      .and. deck%smoothing%elastic_strain == 'local'
+    if (disc%tied) call tie_build(disc%tie, modulus, ground%law(disc%soil)%elastic%poisson_ratio)
   end subroutine build_smoothing
 
   !> Nodes and the grid they come with.

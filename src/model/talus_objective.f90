@@ -12,7 +12,7 @@ module talus_objective
   implicit none
   private
   public :: objective_increment, objective_increments, tensor_rotate, tensors_rotate
-  public :: strain_advance, piola_stress, piola_stresses
+  public :: strain_advance, piola_stress, piola_stresses, cauchy_stress
 
 contains
 
@@ -158,6 +158,17 @@ contains
     piola(3) = stress(4)*f(4) - stress(2)*f(2)
     piola(4) = stress(2)*f(1) - stress(4)*f(3)
   end subroutine piola_stress
+
+  !> Cauchy stress sigma = P F^T/J in the plane; zz is left at 0.
+  pure function cauchy_stress(f, piola) result(stress)
+    real(dp), intent(in) :: f(4)     !! deformation gradient [-]
+    real(dp), intent(in) :: piola(4) !! first Piola stress [Pa], 11, 12, 21, 22
+    real(dp) :: stress(4)            !! [Pa], tension +
+
+    stress = [piola(1)*f(1) + piola(2)*f(2), piola(3)*f(3) + piola(4)*f(4), 0.0_dp, &
+              0.5_dp*(piola(1)*f(3) + piola(2)*f(4) + piola(3)*f(1) + piola(4)*f(2))] &
+              /(f(1)*f(4) - f(2)*f(3))
+  end function cauchy_stress
 
   !> Area times first Piola-Kirchhoff stress at n points of a block, by node.
   pure subroutine piola_stresses(n, area, f, stress, piola)

@@ -42,6 +42,10 @@ module talus_state
                                                 !! still; once some was reset, (n)
     real(dp), allocatable :: stabilising(:)     !! energy in the stabilisation [J/m], (n)
     real(dp), allocatable :: stabilising_lost(:) !! lost there as the soil softened [J/m], (n)
+    real(dp), allocatable :: intact(:)          !! how intact soil is for the tie of the levels, (n)
+    real(dp), allocatable :: between(:)         !! stiffness left between the levels, (n)
+    real(dp), allocatable :: between_old(:)     !! one step ago, (n)
+    real(dp), allocatable :: tied(:,:)          !! slopes of its energy [Pa] and stretch, (6,n)
     real(dp), allocatable :: volume_work(:)     !! sum of stored energy dJ [J/m3], (n)
     real(dp), allocatable :: damped(:)          !! taken by local damping and impacts [J/m], (n)
     real(dp), allocatable :: mass(:)            !! true, with water [kg/m], (n)
@@ -105,6 +109,10 @@ contains
     if (disc%stabilised) then
       allocate (state%stabilising(n), state%stabilising_lost(n), source=0.0_dp)
       allocate (state%stiffness(n), state%stiffness_old(n), source=1.0_dp)
+    end if
+    if (disc%tied) then
+      allocate (state%intact(n), source=1.0_dp)
+      allocate (state%between(n), state%between_old(n), state%tied(6, n), source=0.0_dp)
     end if
   end subroutine allocate_soil
 

@@ -109,6 +109,9 @@ contains
     end associate
     if (allocated(state%stabilising)) part(sum_stabilisation) = &
       sum_apart(n, state%stabilising(first:last) + state%stabilising_lost(first:last))
+    if (allocated(state%tied)) part(sum_stabilisation) = part(sum_stabilisation) + sum_apart(n, &
+      0.5_dp*disc%dual%area(first:last)*sum(state%tied(1:3, first:last)*state%tied(4:6, first:last), &
+      dim=1))
   end subroutine block_sums
 
   !> Work of the load since it was set, v.M v and that less step v.M a, over n components.

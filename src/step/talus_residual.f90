@@ -29,20 +29,22 @@ contains
     real(dp) :: none(4,0)
 
     call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
-                stabilise%stiffness, area, u, h, scale, before, .false., stabilise%level, none, q, &
-                force, energy, loss)
+                stabilise%stiffness, area, u, h, scale, before, .false., stabilise%level, scale, &
+                before, none, q, force, energy, loss)
   end subroutine residual_gather
 
   !> With two levels: the pairs feel the first. Give their nodal force, take the stress between the
   !> levels from area times Piola stress of the second, and give that which the first gets.
-  subroutine residual_gather_levels(stabilise, area, u, first, scale, before, h, q, force, energy, &
-    loss)
+  subroutine residual_gather_levels(stabilise, area, u, first, scale, before, between, between_before, &
+    h, q, force, energy, loss)
     type(stabilise_t), intent(in) :: stabilise
     real(dp), contiguous, intent(in) :: area(:)     !! cell areas [m2], (n)
     real(dp), contiguous, intent(in) :: u(:,:)      !! displacement [m], (2,n)
     real(dp), contiguous, intent(in) :: first(:,:)  !! displacement gradient of the first level, (4,n)
     real(dp), contiguous, intent(in) :: scale(:)    !! stiffness left at each node, 0..1, (n)
     real(dp), contiguous, intent(in) :: before(:)   !! the same one step ago, (n)
+    real(dp), contiguous, intent(in) :: between(:)  !! stiffness between the levels, 0..1, (n)
+    real(dp), contiguous, intent(in) :: between_before(:) !! the same one step ago, (n)
     real(dp), contiguous, intent(inout) :: h(:,:)   !! gradient of the second level in, Piola stress of
                                                     !! the first out [Pa], (4,n)
     real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress of the second level
@@ -53,17 +55,17 @@ contains
     real(dp), contiguous, intent(inout) :: loss(:)  !! sum of energy lost by softening [J/m], (n)
 
     call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
-                stabilise%stiffness, area, u, first, scale, before, .true., stabilise%level, h, q, &
-                force, energy, loss)
+                stabilise%stiffness, area, u, first, scale, before, .true., stabilise%level, between, &
+                between_before, h, q, force, energy, loss)
   end subroutine residual_gather_levels
 
   !> The gather on plain arrays.
   subroutine gather(n, offset, node, reach, stiffness, area, u, h, scale, before, levels, level, &
-    second, q, force, energy, loss)
+    between, between_before, second, q, force, energy, loss)
     integer, intent(in) :: n, offset(*), node(*)
     real(dp), intent(in) :: reach(2,*), stiffness(*), area(*), u(2,*), h(4,*), scale(*), before(*)
-    logical, intent(in) :: levels !! there are two; else `level` and `second` are not read
-    real(dp), intent(in) :: level(*)
+    logical, intent(in) :: levels !! there are two; else `second` and what is between are not read
+    real(dp), intent(in) :: level(*), between(*), between_before(*)
     real(dp), intent(inout) :: second(4,*), q(4,*), force(2,*), energy(*), loss(*)
     real(dp), dimension(2) :: r, f, p_1, p_2, own, h_1, h_2, row_1, row_2, half, apart_1, apart_2
     real(dp) :: kappa, lost, rr, total, gone, whole, scale_own, before_own
@@ -102,10 +104,10 @@ contains
       if (levels) then
         apart_1 = h_1 - second(1:2, i)
         apart_2 = h_2 - second(3:4, i)
-        kappa = level(i)*scale_own
+        kappa = level(i)*between(i)
         rr = 2.0_dp*(sum(apart_1*apart_1) + sum(apart_2*apart_2))
         total = total + kappa*rr
-        gone = gone + (level(i)*before_own - kappa)*rr
+        gone = gone + (level(i)*between_before(i) - kappa)*rr
         apart_1 = kappa*apart_1
         apart_2 = kappa*apart_2
         q(1:2, i) = q(1:2, i) - apart_1

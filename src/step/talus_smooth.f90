@@ -4,9 +4,12 @@
 module talus_smooth
   use talus_kinds, only: sp, dp
   use talus_two_level, only: two_level_t
+  use talus_tie, only: tie_t
+  use talus_tie_step, only: tie_slopes
+  use talus_stretch, only: stretch_piola
   implicit none
   private
-  public :: smooth_gradient, smooth_stress
+  public :: smooth_gradient, smooth_stress, smooth_gradient_tied, smooth_stress_tied
 
 contains
 
@@ -47,6 +50,81 @@ contains
                   stabilised, first, r)
     end if
   end subroutine smooth_stress
+
+  !> Gradient smoothed a second time, and by the same reading of the weights what ties the levels.
+  subroutine smooth_gradient_tied(two_level, y, weighed, h, mean)
+    type(two_level_t), intent(in) :: two_level       !! with symmetric weights
+    real(dp), contiguous, intent(in) :: y(:,:)       !! area times first-level gradient [m2], (4,n)
+    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_measure, (5,n)
+    real(dp), contiguous, intent(inout) :: h(:,:)    !! smoothed gradient, (4,n)
+    real(dp), contiguous, intent(inout) :: mean(:,:) !! smoothed, (5,n)
+    integer :: l
+
+    !$omp do schedule(static)
+    do l = 1, size(h, 2)
+      call sum_tied(l, two_level%offset, two_level%cell, two_level%s, two_level%rest(l), y, weighed, &
+                    h(:, l), mean(:, l))
+    end do
+    !$omp end do
+  end subroutine smooth_gradient_tied
+
+  !> First Piola stress smoothed by the adjoint, that of the first level and that of the tie added.
+  subroutine smooth_stress_tied(two_level, tie, area, q, weighed, stretch, first, r, intact, held, loss)
+    type(two_level_t), intent(in) :: two_level       !! with symmetric weights
+    type(tie_t), intent(in) :: tie
+    real(dp), contiguous, intent(in) :: area(:)      !! cell areas [m2], (n)
+    real(dp), contiguous, intent(in) :: q(:,:)       !! area times first Piola stress [N m/m], (4,n)
+    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_means, (5,n)
+    real(dp), contiguous, intent(in) :: stretch(:,:) !! of the first level, (6,n)
+    real(dp), contiguous, intent(in) :: first(:,:)   !! first Piola stress of the first level [Pa], (4,n)
+    real(dp), contiguous, intent(inout) :: r(:,:)    !! sum of all [Pa], (4,n)
+    ! Those of a motion; without them all soil is intact, and nothing is lost.
+    real(dp), contiguous, intent(in), optional :: intact(:)    !! how intact the soil is, (n)
+    real(dp), contiguous, intent(inout), optional :: held(:,:) !! slopes of the energy [Pa] and stretch,
+                                                               !! those of one step ago in, (6,n)
+    real(dp), contiguous, intent(inout), optional :: loss(:)   !! sum of energy lost by softening
+                                                               !! [J/m], (n)
+    real(dp) :: around(5), slope(3), piola(4), whole
+    integer :: l
+
+    whole = 1.0_dp
+    !$omp do schedule(static)
+    do l = 1, size(r, 2)
+      call sum_tied(l, two_level%offset, two_level%cell, two_level%s, two_level%rest(l), q, weighed, &
+                    r(:, l), around)
+      if (present(intact)) whole = intact(l)
+      slope = tie_slopes(whole*tie%bulk(l), whole*tie%shear(l), stretch(:, l), around)
+      call stretch_piola(stretch(:, l), slope, piola)
+      r(:, l) = r(:, l) + first(:, l) + piola
+      if (.not. present(held)) cycle
+      ! Work of the forces at both ends of the step, less the change of the energy 1/2 slope.stretch,
+      ! which summed over all nodes is nothing where no weight changes.
+      loss(l) = loss(l) + 0.5_dp*area(l)*(dot_product(held(1:3, l), stretch(1:3, l)) &
+        - dot_product(slope, held(4:6, l)))
+      held(1:3, l) = slope
+      held(4:6, l) = stretch(1:3, l)
+    end do
+    !$omp end do
+  end subroutine smooth_stress_tied
+
+  !> Both sums of one cell, on plain arrays.
+  pure subroutine sum_tied(l, offset, cell, s, rest, from, weighed, to, mean)
+    integer, intent(in) :: l, offset(*), cell(*)
+    real(sp), intent(in) :: s(*)
+    real(dp), intent(in) :: rest, from(4,*), weighed(5,*)
+    real(dp), intent(out) :: to(4), mean(5)
+    real(dp) :: weight
+    integer :: k, c
+
+    to = rest*from(:, l)
+    mean = rest*weighed(:, l)
+    do k = offset(l), offset(l+1) - 1
+      c = cell(k)
+      weight = real(s(k), dp)
+      to = to + weight*from(:, c)
+      mean = mean + weight*weighed(:, c)
+    end do
+  end subroutine sum_tied
 
   !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their
   !> own, so that an addition need not wait for the one before.

@@ -3,9 +3,10 @@
 !>
 !>   u_n+1   = u_n + dt v_n+1/2                          motion_position
 !>   F_n+1   = 1 + G u_n+1, then W F                     strain_gradient, or _first, smooth_gradient
+!>   U, e    = stretch, and its mean where soil is intact  tie_measure, smooth_gradient_tied, tie_means
 !>   sigma   = law(F_n, F_n+1, suction), P = J sigma F^-T  stress_update
 !>   r       = affine residual, its force and its P      residual_gather, or _levels
-!>   R       = W^T P, and P of the first level           smooth_stress
+!>   R       = W^T P, and P of the first level           smooth_stress, or _tied
 !>   f       = load + stabilisation - G^T R              force_unbalanced
 !>   v_n+3/2 = v_n+1/2 + dt M^-1 f                       motion_velocity
 module talus_soil_step
@@ -14,7 +15,8 @@ module talus_soil_step
   use talus_ground, only: ground_t
   use talus_state, only: state_t
   use talus_strain, only: strain_first, strain_gradient, per_area
-  use talus_smooth, only: smooth_gradient, smooth_stress
+  use talus_smooth, only: smooth_gradient, smooth_stress, smooth_gradient_tied, smooth_stress_tied
+  use talus_tie_step, only: tie_measure, tie_means
   use talus_stress_update, only: stress_update
   use talus_residual, only: residual_gather, residual_gather_levels
   use talus_force, only: force_unbalanced, motion_position, motion_velocity, motion_damp, &
@@ -32,6 +34,10 @@ module talus_soil_step
     real(dp), allocatable :: drive(:,:)       !! the one that drives damage alone, (4,n) or (4,0)
     real(dp), allocatable :: q(:,:)           !! area times first Piola stress [N m/m], (4,n)
     real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n) or (2,0)
+    ! What ties the levels, (:,n) or (:,0); see talus_tie_step.
+    real(dp), allocatable :: stretch(:,:)     !! of the first level, 6 rows
+    real(dp), allocatable :: weighed(:,:)     !! area times weight, that times stretch, 5 rows
+    real(dp), allocatable :: mean(:,:)        !! the same, smoothed, 5 rows
     real(dp), allocatable :: force(:,:)       !! out-of-balance force [N/m], (2,n)
     real(dp), allocatable :: pull(:,:)        !! less damping, for a consistent mass, (2,n) or (2,0)
   end type work_t
@@ -62,6 +68,9 @@ contains
               source=0.0_dp)
     allocate (work%stabilising(2, merge(disc%n, 0, disc%stabilised)), source=0.0_dp)
     allocate (work%drive(4, merge(disc%n, 0, disc%damage_only)), source=0.0_dp)
+    associate (tied => merge(disc%n, 0, disc%tied))
+      allocate (work%stretch(6, tied), work%weighed(5, tied), work%mean(5, tied), source=0.0_dp)
+    end associate
     allocate (work%pull(2, 0))
   end subroutine work_allocate
 
@@ -162,21 +171,26 @@ contains
     integer, intent(inout) :: failed
     real(dp) :: none(0)
 
-    call gradients(disc, state%u, work)
+    call gradients(disc, state%u, work, stiffness=state%stiffness, intact=state%intact, &
+                   between=state%between, between_old=state%between_old)
     call stress_update(disc, ground, coupled, work%h, work%drive, state, work%q, failed)
     if (disc%stabilised) then
       call unbalanced(disc, state%u, state%stiffness, state%stiffness_old, state%load, work, &
-                      state%stabilising, state%stabilising_lost)
+                      state%stabilising, state%stabilising_lost, state%between, state%between_old, &
+                      state%intact, state%tied)
     else
       call unbalanced(disc, state%u, none, none, state%load, work, none, none)
     end if
   end subroutine forces
 
   !> Displacement gradients of all levels; within a parallel region.
-  subroutine gradients(disc, u, work)
+  subroutine gradients(disc, u, work, f, stiffness, intact, between, between_old)
     type(disc_t), intent(in) :: disc
     real(dp), contiguous, intent(in) :: u(:,:) !! displacement [m], (2,n)
-    type(work_t), intent(inout) :: work        !! y, h and drive come out
+    type(work_t), intent(inout) :: work        !! y, h and drive come out, and what ties the levels
+    ! What tie_measure says of these; only for levels that are tied.
+    real(dp), contiguous, intent(in), optional :: f(:,:), stiffness(:)
+    real(dp), contiguous, intent(inout), optional :: intact(:), between(:), between_old(:)
 
     if (.not. disc%two_levels) then
       call strain_gradient(disc%scni, disc%dual%area, u, work%h)
@@ -186,13 +200,21 @@ contains
       call per_area(disc%dual%area, work%h)
     else
       call strain_first(disc%scni, u, work%y)
-      call smooth_gradient(disc%two_level, work%y, work%h)
+      if (disc%tied) then
+        call tie_measure(disc%tie, disc%dual%area, work%y, work%stretch, work%weighed, f, stiffness, &
+          intact, between, between_old)
+        call smooth_gradient_tied(disc%two_level, work%y, work%weighed, work%h, work%mean)
+        call tie_means(work%mean, work%weighed)
+      else
+        call smooth_gradient(disc%two_level, work%y, work%h)
+      end if
       if (disc%stabilised) call per_area(disc%dual%area, work%y)
     end if
   end subroutine gradients
 
   !> Out-of-balance force from the gradients and the stress; within a parallel region.
-  subroutine unbalanced(disc, u, scale, before, load, work, energy, loss)
+  subroutine unbalanced(disc, u, scale, before, load, work, energy, loss, between, before_between, &
+    intact, tied)
     type(disc_t), intent(in) :: disc
     real(dp), contiguous, intent(in) :: u(:,:)       !! displacement [m], (2,n)
     ! What residual_gather says of these; without stabilisation none is read.
@@ -200,12 +222,24 @@ contains
     real(dp), contiguous, intent(in) :: load(:,:)    !! weight and tractions [N/m], (2,n)
     type(work_t), intent(inout) :: work              !! from y, h and q to force
     real(dp), contiguous, intent(inout) :: energy(:), loss(:)
+    ! For levels that are tied: what residual_gather_levels says of these, and of a motion what
+    ! smooth_stress_tied says.
+    real(dp), contiguous, intent(in), optional :: between(:), before_between(:)
+    real(dp), contiguous, intent(in), optional :: intact(:)
+    real(dp), contiguous, intent(inout), optional :: tied(:,:)
 
     associate (area => disc%dual%area)
       if (disc%two_levels .and. .not. disc%damage_only) then
-        if (disc%stabilised) call residual_gather_levels(disc%stabilise, area, u, work%y, scale, &
-          before, work%h, work%q, work%stabilising, energy, loss)
-        call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
+        if (disc%tied) then
+          call residual_gather_levels(disc%stabilise, area, u, work%y, scale, before, between, &
+            before_between, work%h, work%q, work%stabilising, energy, loss)
+          call smooth_stress_tied(disc%two_level, disc%tie, area, work%q, work%weighed, work%stretch, &
+            work%h, work%y, intact, tied, loss)
+        else
+          if (disc%stabilised) call residual_gather_levels(disc%stabilise, area, u, work%y, scale, &
+            before, scale, before, work%h, work%q, work%stabilising, energy, loss)
+          call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
+        end if
         call force_unbalanced(disc%scni, work%y, load, work%stabilising, work%force)
       else
         if (disc%stabilised) then

@@ -114,16 +114,17 @@ contains
     real(dp), contiguous, intent(in) :: nothing(:,:) !! zeros, (2,n)
     real(dp), contiguous, intent(in) :: d(:,:)       !! displacement [m], (2,n)
     type(work_t), intent(inout) :: work
-    real(dp), allocatable :: energy(:), loss(:), one(:)
+    real(dp), allocatable :: energy(:), loss(:), one(:), none(:)
     integer :: i
 
     allocate (energy(disc%n), loss(disc%n), one(disc%n))
     energy = 0.0_dp
     loss = 0.0_dp
     one = 1.0_dp
+    none = 0.0_dp*one
     !$omp parallel default(none) shared(disc, ground, state, bulk, nothing, d, work, energy, loss) &
-    !$omp shared(one) private(i)
-    call gradients(disc, d, work)
+    !$omp shared(one, none) private(i)
+    call gradients(disc, d, work, f=state%f)
     !$omp do schedule(static)
     do i = 1, disc%n
       call elastic_piola_tangent(ground%law(disc%soil(i))%elastic, bulk(i), state%f(:, i), &
@@ -131,7 +132,7 @@ contains
       work%q(:, i) = disc%dual%area(i)*work%q(:, i)
     end do
     !$omp end do
-    call unbalanced(disc, d, one, one, nothing, work, energy, loss)
+    call unbalanced(disc, d, one, one, nothing, work, energy, loss, none, none)
     !$omp do schedule(static)
     do i = 1, disc%n
       work%force(:, i) = -work%force(:, i)

@@ -10,6 +10,7 @@ module models
   use talus_scni, only: scni_build, scni_transpose
   use talus_two_level, only: two_level_build, weights_symmetric
   use talus_stabilise, only: stabilise_build
+  use talus_tie, only: tie_build
   use talus_disc, only: disc_t
   use talus_ground, only: ground_t
   use talus_soil_law, only: soil_law_prepare
@@ -37,6 +38,7 @@ module models
     logical :: damage_only = .false.
     real(dp) :: stabilisation = 0.05_dp     !! 0 for none
     real(dp) :: level_stiffness = 0.025_dp  !! between the levels
+    logical :: smoothed = .false.           !! elastic strain too
     real(dp) :: support = 1.6_dp            !! kernel support radius over spacing
     logical :: consistent = .false.         !! mass is consistent with the strain
     real(dp) :: layer = huge(1.0_dp)        !! soil 2 is above this elevation [m]
@@ -82,6 +84,9 @@ contains
     modulus = ground%law(disc%soil)%elastic%youngs_modulus
     if (disc%stabilised) call stabilise_build(disc%stabilise, disc%mesh%x, disc%dual, modulus, &
       square%stabilisation, disc%two_levels .and. .not. disc%damage_only, square%level_stiffness)
+    disc%tied = disc%stabilised .and. disc%two_levels .and. .not. disc%damage_only &
+      .and. square%weights == weights_symmetric .and. .not. square%smoothed
+    if (disc%tied) call tie_build(disc%tie, modulus, ground%law(disc%soil)%elastic%poisson_ratio)
     if (status_failed(status)) error stop 'square_disc failed'
   end subroutine square_disc
 

@@ -3,18 +3,16 @@
 
 Timoshenko's cantilever in plane strain (E' = E/(1-nu^2), nu' = nu/(1-nu)). Its root has the exact
 displacements at every node, its tip the exact shear: no rigid motion is left to take out, and no corner is
-singular. Tip deflection is that of the middle of the end, within 5 % of the exact (required). At two levels
-ell = 3 h: such a beam is softer at any Poisson's ratio, so locking is its tip deflection against that at nu =
-0.3, each over its exact one, and is reported beside the deflection itself.
+singular. Tip deflection is that of the middle of the end, within 5 % of the exact (required), at one level and at
+two, where ell = 3 h.
 
 A strip load on saturated soil with stiff pore water (S_s = 2e-10/Pa, K_w over the soil's modulus about 400),
 at once: its settlement is that of the same dry soil at nu_u = (K + 1/S_s - 2/3 G)/(2 (K + 1/S_s + 1/3 G)).
 
 Alternation is what the smooth fit through its neighbours does not explain: (p_i-2 - 4 p_i-1 + 6 p_i - 4 p_i+1
 + p_i+2)/16 is nothing for any cubic and all of a field that alternates. It is taken along x, along y, and
-along both in turn (the checkerboard), as root mean square over that of the pressure. At two levels the force
-on a node comes from the mean of stress over ell (src/THEORY.md (4.8)), by the same weights as strain: that
-mean is the stress that acts, and the values at the nodes may alternate without any force.
+along both in turn (the checkerboard), as root mean square over that of the pressure. At two levels the law's own
+stress and that which acts on the nodes (`stress_acting`) are both judged.
 """
 
 import pathlib
@@ -109,17 +107,17 @@ def quadrilaterals(spacing):
     return tip(nodes, found.reshape(-1, 2)) / tip(nodes, exact(*nodes.T)) - 1
 
 
-def beam(spacing, length, poisson=POISSON):
+def beam(spacing, length, poisson=POISSON, more=""):
     """Result, and error of the tip deflection; `length` of the second level, 0 for one level."""
     run = case.run(
         "beam.nml",
         [
             ("spacing = 0.25", f"spacing = {spacing}"),
-            ("levels = 1", f"levels = 2\n  length = {length}" if length else "levels = 1"),
+            ("levels = 1", f"levels = 2\n  length = {length}{more}" if length else "levels = 1"),
             ("poisson_ratio = 0.4999", f"poisson_ratio = {poisson}"),
             ("&stage", ends(spacing, poisson) + "&stage"),
         ],
-        name=f"beam_{spacing}_{length}_{poisson}",
+        name=f"beam_{spacing}_{length}_{poisson}" + "_more" * bool(more),
     )
     case.check_true(f"beam, h = {spacing} m, nu = {poisson}: balanced", run.summary["failed"] == ".false.")
     return run, tip(run.nodes, run.field("displacement")) / tip(run.nodes, exact(*run.nodes.T, poisson)) - 1
@@ -145,16 +143,25 @@ def beams():
         run, error = beam(spacing, 3 * spacing)
         what = f"two levels, ell = 3 h, h = {spacing:g} m"
         case.study("cantilever, two levels, ell = 3 h", run, spacing, abs(error))
-        held = {0.25: (0.0, 0.7), 0.125: (0.0, 0.16)}.get(spacing)
-        case.target(f"{what}: tip deflection", abs(error), 0.05, "required", held=held, asked=True)
+        case.target(f"{what}: tip deflection", abs(error), 0.05, "required", asked=True)
         _, softer = beam(spacing, 3 * spacing, 0.3)
         ratio = (1 + error) / (1 + softer) - 1
         case.target(f"{what}: tip deflection over that at nu = 0.3, less one", abs(ratio), 0.05, "no locking")
-        calm(f"{what}: mean stress", run, mean_stress(run), spacing, 3 * spacing)
+        calm(f"{what}: mean stress", run, mean_stress(run), spacing)
+        calm(f"{what}: mean stress that acts", run, mean_stress(run, "stress_acting"), spacing)
+        if spacing == 0.25:
+            _, soft = beam(spacing, 3 * spacing, more="\n  elastic_strain = 'smoothed'")
+            case.remedy(
+                "elastic strain that is smoothed, too: a beam of 4/3 ell is soft (at any Poisson's ratio), two levels; "
+                "remedy: intact soil is tied by its own moduli",
+                f"{soft:.2g} error of the tip deflection",
+                f"{error:.2g}",
+                soft > 0.3,
+            )
 
 
-def mean_stress(run):
-    return run.field("stress")[:, :3].mean(axis=1)
+def mean_stress(run, name="stress"):
+    return run.field(name)[:, :3].mean(axis=1)
 
 
 def on_grid(run, field, spacing):
@@ -163,16 +170,6 @@ def on_grid(run, field, spacing):
     grid = np.zeros(place.max(axis=0) + 1)
     grid[place[:, 0], place[:, 1]] = field
     return grid
-
-
-def acting(run, field, length):
-    """A field averaged by the weights of the second level (src/THEORY.md (4.7)), cubic B-spline."""
-    z = np.linalg.norm(run.nodes[:, None] - run.nodes[None], axis=2) / length
-    kernel = np.where(z <= 0.5, 2 / 3 - 4 * z**2 + 4 * z**3, np.where(z <= 1, 4 / 3 * (1 - z) ** 3, 0.0))
-    scale = np.ones(len(field))
-    for _ in range(100):
-        scale = np.sqrt(scale / (kernel @ (scale * run.area)))
-    return scale * (kernel @ (scale * run.area * field))
 
 
 def alternation(grid):
@@ -187,14 +184,8 @@ def alternation(grid):
     return [np.sqrt(np.mean(part**2) / np.mean(grid**2)) for part in parts]
 
 
-def calm(what, run, pressure, spacing, length=0.0):
-    """Targets for the alternation of a pressure; at two levels for the nodes' own, and that which acts."""
-    if length:
-        own = alternation(on_grid(run, pressure, spacing))
-        why = "our own; the nodes' own values, which act through their mean only"
-        case.target(f"{what} of the nodes: checkerboard", own[2], 0.01, why, held=(0.0, 0.05))
-        case.target(f"{what} of the nodes: alternation in lines", max(own[:2]), 0.05, why, held=(0.0, 0.45))
-        pressure, what = acting(run, pressure, length), f"{what} that acts"
+def calm(what, run, pressure, spacing):
+    """Targets for the alternation of a pressure."""
     x, y, both = alternation(on_grid(run, pressure, spacing))
     case.target(f"{what}: checkerboard", both, 0.01, "our own")
     case.target(f"{what}: alternation in lines", max(x, y), 0.05, "our own")
@@ -219,7 +210,7 @@ def footing():
         ratio = settlement(runs[0]) / settlement(runs[1])
         why = "our own: no locking"
         case.target(f"{what}: undrained settlement over that at nu_u, less one", abs(ratio - 1), 0.05, why)
-        calm(f"{what}: excess pressure", runs[0], excess(runs[0]), 0.1, length)
+        calm(f"{what}: excess pressure", runs[0], excess(runs[0]), 0.1)
         case.check(f"{what}: water error", abs(float(runs[0].summary["water_error"])), 1e-12, "round-off")
         left = float(runs[0].summary["coupling_error"])
         case.check(f"{what}: pressure left to later steps", left, 1e-2, "src/THEORY.md 5.6")

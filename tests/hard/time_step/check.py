@@ -64,6 +64,8 @@ PARTS = {
 def energies(words, safety, more=()):
     """Times and kinetic energies of all steps of a run, its exit code, and what it dissipated."""
     replace = [pair for part, word in zip(PARTS.values(), words) for pair in part[word]]
+    if words[:3] == ("two levels", "stabilised", "breaking"):  # whose strain has lower peaks
+        replace.append(("kappa_0 = 2.0e-3", "kappa_0 = 1.6e-3"))
     replace += [*more, ("step_safety = 0.99", f"step_safety = {safety}")]
     result = case.run("block.nml", replace, code=(0, 3), name="block")
     history = result.history()

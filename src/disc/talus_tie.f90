@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The tie of the levels (src/THEORY.md (4.10b)): intact soil resists what the second level does not see
-!> of the first by its own elastic moduli. Those of a pair of nodes are the geometric mean of both.
+!> The tie of the levels (src/THEORY.md (4.10b)): intact soil resists what the second level does not
+!> see of the first by its own elastic moduli. Those of a pair are the geometric mean of both.
 module talus_tie
   use talus_kinds, only: dp
   implicit none

@@ -5,11 +5,12 @@
 !> and p ends of pairs of the stabilisation:
 !>
 !>   strain         n (48 + 52) + 20 m1, and 8 n to divide by the area without a second level
-!>   second level   n 76 + 8 m2, and 72 n to divide by the area with stabilisation
+!>   second level   n 76 + 8 m2, and 72 n to divide by the area with stabilisation; where intact soil is tied
+!>                  192 n for its stretch and weights, 80 n gathered with them and 104 n for their means
 !>   stress         n (220 + what the physics adds)
 !>   stabilisation  n (180) + 28 p, and 72 n between two levels
-!>   adjoint        n 76 + 8 m2, and 32 n with stabilisation; without a second level 72 n to divide by
-!>                  the area where there is no stabilisation
+!>   adjoint        n 76 + 8 m2, and 32 n with stabilisation, 232 n where intact soil is tied; without a
+!>                  second level 72 n to divide by the area where there is no stabilisation
 !>   force          n (68 + 80) + 20 m1, and 16 n each with stabilisation and with damping
 !>   seepage        n 290 + 88 faces, an explicit sub-step; n 100 + 20 m1 more for oblique fluxes
 module talus_bench_bytes
@@ -46,6 +47,11 @@ contains
           bytes(phase_second) = bytes(phase_second) + 72.0_dp*n
           bytes(phase_adjoint) = bytes(phase_adjoint) + 32.0_dp*n
           bytes(phase_stabilise) = 72.0_dp*n
+        end if
+        if (disc%tied) then
+          bytes(phase_second) = bytes(phase_second) + 376.0_dp*n
+          bytes(phase_stabilise) = bytes(phase_stabilise) + 16.0_dp*n
+          bytes(phase_adjoint) = bytes(phase_adjoint) + 232.0_dp*n
         end if
       else
         bytes(phase_strain) = bytes(phase_strain) + 8.0_dp*n

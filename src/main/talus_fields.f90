@@ -42,9 +42,10 @@ contains
     end do
   end function field_total_stress
 
-  !> Total Cauchy stress that the nodes feel where stress sees the second level [Pa], (4,n): the adjoint
-  !> mean of the stress around, and what ties the levels (src/THEORY.md (4.8), (4.10b)). Across the plane
-  !> the tie has the stress of elastic soil. What the pairs of the stabilisation bear is left out.
+  !> Total Cauchy stress that the nodes feel where stress sees the second level [Pa], (4,n): the
+  !> adjoint mean of the stress around, and what ties the levels (src/THEORY.md (4.8), (4.10),
+  !> (4.10b)). Across the plane the tie has the stress of elastic soil. What the pairs of the
+  !> stabilisation bear is left out.
   function field_acting_stress(disc, ground, state) result(acting)
     type(disc_t), intent(in) :: disc
     type(ground_t), intent(in) :: ground

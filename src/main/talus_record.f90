@@ -276,7 +276,8 @@ contains
       if (session%disc%two_levels .and. .not. session%disc%damage_only) then
         field = field_acting_stress(session%disc, session%ground, state)
         call snapshot_field(result, 'stress_acting', 'Pa', &
-          'total Cauchy stress that acts on the nodes, xx, yy, zz, xy, tension positive', field, status)
+          'total Cauchy stress that acts on the nodes, xx, yy, zz, xy, tension positive', field, &
+          status)
       end if
       field = field_strain(session%disc, state)
       call snapshot_field(result, 'strain', '1', &

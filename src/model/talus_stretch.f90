@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Stretch of one point in plane strain, a strain without rotation that is linear in F, and the Piola
-!> stress of an energy that is a function of it (src/THEORY.md (4.10a)).
+!> Stretch of one point in plane strain, a strain without rotation that is linear in F, and the
+!> Piola stress of an energy that is a function of it (src/THEORY.md (4.10a)).
 !>
-!> F takes a vector w, as a complex number, to a w + g conj(w). The stretch U = R^T F has a = |a| and
-!> the deviator g conj(a)/|a|: with R the rotation by the angle of a, no root of a tensor is needed.
-!> A stretch is stored as half the trace of U - 1, half of U_11 - U_22, U_12, then the cosine and sine
-!> of R and how fast R turns with F, one over |a|.
+!> F takes a vector w, as a complex number, to a w + g conj(w). With R the rotation by the angle of
+!> a, the stretch U = R^T F has |a| for a and g conj(a)/|a| for g: no root of a tensor is needed.
+!> A stretch is stored as half the trace of U - 1, half of U_11 - U_22, U_12, then the cosine and
+!> sine of R and how fast R turns with F, one over |a|.
 module talus_stretch
   use talus_kinds, only: dp
   implicit none
@@ -24,8 +24,8 @@ contains
     call deviator(h, stretch)
   end subroutine stretch_of
 
-  !> Change of the stretch with a small change of F, where U is near 1: that of F by the rotation of F,
-  !> which is taken not to turn.
+  !> Change of the stretch with a small change of F, where U is near 1: that of F turned back by the
+  !> rotation of F, which stays.
   pure subroutine stretch_change(f, change, stretch)
     real(dp), intent(in) :: f(4)         !! deformation gradient 11, 12, 21, 22 [-]
     real(dp), intent(in) :: change(4)    !! of it

@@ -35,7 +35,7 @@ contains
 
   !> With two levels: the pairs feel the first. Give their nodal force, take the stress between the
   !> levels from area times Piola stress of the second, and give that which the first gets.
-  subroutine residual_gather_levels(stabilise, area, u, first, scale, before, between, between_before, &
+  subroutine residual_gather_levels(stabilise, area, u, first, scale, before, between, between_old, &
     h, q, force, energy, loss)
     type(stabilise_t), intent(in) :: stabilise
     real(dp), contiguous, intent(in) :: area(:)     !! cell areas [m2], (n)
@@ -44,7 +44,7 @@ contains
     real(dp), contiguous, intent(in) :: scale(:)    !! stiffness left at each node, 0..1, (n)
     real(dp), contiguous, intent(in) :: before(:)   !! the same one step ago, (n)
     real(dp), contiguous, intent(in) :: between(:)  !! stiffness between the levels, 0..1, (n)
-    real(dp), contiguous, intent(in) :: between_before(:) !! the same one step ago, (n)
+    real(dp), contiguous, intent(in) :: between_old(:) !! the same one step ago, (n)
     real(dp), contiguous, intent(inout) :: h(:,:)   !! gradient of the second level in, Piola stress of
                                                     !! the first out [Pa], (4,n)
     real(dp), contiguous, intent(inout) :: q(:,:)   !! area times Piola stress of the second level
@@ -56,16 +56,16 @@ contains
 
     call gather(size(scale), stabilise%offset, stabilise%node, stabilise%reach, &
                 stabilise%stiffness, area, u, first, scale, before, .true., stabilise%level, between, &
-                between_before, h, q, force, energy, loss)
+                between_old, h, q, force, energy, loss)
   end subroutine residual_gather_levels
 
   !> The gather on plain arrays.
   subroutine gather(n, offset, node, reach, stiffness, area, u, h, scale, before, levels, level, &
-    between, between_before, second, q, force, energy, loss)
+    between, between_old, second, q, force, energy, loss)
     integer, intent(in) :: n, offset(*), node(*)
     real(dp), intent(in) :: reach(2,*), stiffness(*), area(*), u(2,*), h(4,*), scale(*), before(*)
     logical, intent(in) :: levels !! there are two; else `second` and what is between are not read
-    real(dp), intent(in) :: level(*), between(*), between_before(*)
+    real(dp), intent(in) :: level(*), between(*), between_old(*)
     real(dp), intent(inout) :: second(4,*), q(4,*), force(2,*), energy(*), loss(*)
     real(dp), dimension(2) :: r, f, p_1, p_2, own, h_1, h_2, row_1, row_2, half, apart_1, apart_2
     real(dp) :: kappa, lost, rr, total, gone, whole, scale_own, before_own
@@ -107,7 +107,7 @@ contains
         kappa = level(i)*between(i)
         rr = 2.0_dp*(sum(apart_1*apart_1) + sum(apart_2*apart_2))
         total = total + kappa*rr
-        gone = gone + (level(i)*between_before(i) - kappa)*rr
+        gone = gone + (level(i)*between_old(i) - kappa)*rr
         apart_1 = kappa*apart_1
         apart_2 = kappa*apart_2
         q(1:2, i) = q(1:2, i) - apart_1

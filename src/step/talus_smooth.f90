@@ -69,14 +69,15 @@ contains
   end subroutine smooth_gradient_tied
 
   !> First Piola stress smoothed by the adjoint, that of the first level and that of the tie added.
-  subroutine smooth_stress_tied(two_level, tie, area, q, weighed, stretch, first, r, intact, held, loss)
+  subroutine smooth_stress_tied(two_level, tie, area, q, weighed, stretch, first, r, intact, held, &
+    loss)
     type(two_level_t), intent(in) :: two_level       !! with symmetric weights
     type(tie_t), intent(in) :: tie
     real(dp), contiguous, intent(in) :: area(:)      !! cell areas [m2], (n)
     real(dp), contiguous, intent(in) :: q(:,:)       !! area times first Piola stress [N m/m], (4,n)
     real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_means, (5,n)
     real(dp), contiguous, intent(in) :: stretch(:,:) !! of the first level, (6,n)
-    real(dp), contiguous, intent(in) :: first(:,:)   !! first Piola stress of the first level [Pa], (4,n)
+    real(dp), contiguous, intent(in) :: first(:,:)   !! Piola stress of the first level [Pa], (4,n)
     real(dp), contiguous, intent(inout) :: r(:,:)    !! sum of all [Pa], (4,n)
     ! Those of a motion; without them all soil is intact, and nothing is lost.
     real(dp), contiguous, intent(in), optional :: intact(:)    !! how intact the soil is, (n)

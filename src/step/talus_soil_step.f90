@@ -213,7 +213,7 @@ contains
   end subroutine gradients
 
   !> Out-of-balance force from the gradients and the stress; within a parallel region.
-  subroutine unbalanced(disc, u, scale, before, load, work, energy, loss, between, before_between, &
+  subroutine unbalanced(disc, u, scale, before, load, work, energy, loss, between, between_old, &
     intact, tied)
     type(disc_t), intent(in) :: disc
     real(dp), contiguous, intent(in) :: u(:,:)       !! displacement [m], (2,n)
@@ -224,7 +224,7 @@ contains
     real(dp), contiguous, intent(inout) :: energy(:), loss(:)
     ! For levels that are tied: what residual_gather_levels says of these, and of a motion what
     ! smooth_stress_tied says.
-    real(dp), contiguous, intent(in), optional :: between(:), before_between(:)
+    real(dp), contiguous, intent(in), optional :: between(:), between_old(:)
     real(dp), contiguous, intent(in), optional :: intact(:)
     real(dp), contiguous, intent(inout), optional :: tied(:,:)
 
@@ -232,7 +232,7 @@ contains
       if (disc%two_levels .and. .not. disc%damage_only) then
         if (disc%tied) then
           call residual_gather_levels(disc%stabilise, area, u, work%y, scale, before, between, &
-            before_between, work%h, work%q, work%stabilising, energy, loss)
+            between_old, work%h, work%q, work%stabilising, energy, loss)
           call smooth_stress_tied(disc%two_level, disc%tie, area, work%q, work%weighed, work%stretch, &
             work%h, work%y, intact, tied, loss)
         else

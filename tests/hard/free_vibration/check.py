@@ -58,7 +58,7 @@ def spectra():
     limits = {
         0: (0.05, "required"),
         3: (0.10, "required"),
-        4: (0.20, "our own: smoothing over 4 h is physical"),
+        4: (0.05, "our own: as at one level"),
     }
     for perturbation in (0.0, 0.3) if case.full else (0.3,):
         for factor, (limit, why) in limits.items():

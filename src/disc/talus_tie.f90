@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The tie of the levels (src/THEORY.md (4.10b)): intact soil resists what the second level does not
-!> see of the first by its own elastic moduli. Those of a pair are the geometric mean of both.
+!> see of the first by its own elastic moduli. That of a pair in shear is the geometric mean of both.
 module talus_tie
   use talus_kinds, only: dp
   implicit none
@@ -8,8 +8,8 @@ module talus_tie
   public :: tie_t, tie_build
 
   type :: tie_t
-    real(dp), allocatable :: bulk(:)  !! root of 4 (lambda + mu) [Pa^1/2], (n)
-    real(dp), allocatable :: shear(:) !! root of 4 mu [Pa^1/2], (n)
+    real(dp), allocatable :: shear(:)  !! root of 4 mu [Pa^1/2], (n)
+    real(dp), allocatable :: volume(:) !! (lambda + mu)/mu [-], (n)
   end type tie_t
 
 contains
@@ -21,7 +21,6 @@ contains
     real(dp), intent(in) :: poisson_ratio(:)  !! at each node [-], (n)
 
     tie%shear = sqrt(2.0_dp*youngs_modulus/(1.0_dp + poisson_ratio))
-    ! lambda + mu = mu/(1 - 2 nu)
-    tie%bulk = tie%shear/sqrt(1.0_dp - 2.0_dp*poisson_ratio)
+    tie%volume = 1.0_dp/(1.0_dp - 2.0_dp*poisson_ratio)
   end subroutine tie_build
 end module talus_tie

@@ -48,7 +48,7 @@ contains
           stiffness=state%stiffness, intact=state%intact, between=state%between, &
           between_old=state%between_old)
         call smooth_gradient_tied(disc%two_level, work%y, work%weighed, work%h, work%mean)
-        call tie_means(work%mean, work%weighed)
+        call tie_means(disc%tie, work%mean, work%weighed)
       else
         call smooth_gradient(disc%two_level, work%y, work%h)
       end if
@@ -67,7 +67,7 @@ contains
       call mark(seconds(phase_stabilise), began)
       if (disc%tied) then
         call smooth_stress_tied(disc%two_level, disc%tie, disc%dual%area, work%q, work%weighed, &
-          work%stretch, work%h, work%y, state%intact, state%tied, state%stabilising_lost)
+          work%mean, work%stretch, work%h, work%y, state%intact, state%tied, state%stabilising_lost)
       else
         call smooth_stress(disc%two_level, work%q, disc%stabilised, work%h, work%y)
       end if

@@ -58,7 +58,7 @@ contains
         + bytes(disc%two_level%adjoint)
       cost%stabilise = bytes(disc%stabilise%offset) + bytes(disc%stabilise%node) &
         + bytes(disc%stabilise%reach) + bytes(disc%stabilise%stiffness) &
-        + bytes(disc%stabilise%level) + bytes(disc%tie%bulk) + bytes(disc%tie%shear)
+        + bytes(disc%stabilise%level) + bytes(disc%tie%volume) + bytes(disc%tie%shear)
       ! Strength reduction also keeps the state of its mechanism.
       cost%state = merge(3_i8, 2_i8, allocated(session%reduction))*state_bytes(session%state)
       cost%step = bytes(work%y) + bytes(work%h) + bytes(work%drive) + bytes(work%q) &

@@ -43,7 +43,7 @@ contains
     real(dp), intent(inout) :: stretch(6)
 
     ! Nothing of a is left only where F turns inside out.
-    stretch(6) = 1.0_dp/max(hypot(real_part, imaginary), epsilon(1.0_dp))
+    stretch(6) = 1.0_dp/sqrt(max(real_part**2 + imaginary**2, epsilon(1.0_dp)**2))
     stretch(4) = real_part*stretch(6)
     stretch(5) = imaginary*stretch(6)
   end subroutine rotation

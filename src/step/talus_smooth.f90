@@ -55,51 +55,52 @@ contains
   subroutine smooth_gradient_tied(two_level, y, weighed, h, mean)
     type(two_level_t), intent(in) :: two_level       !! with symmetric weights
     real(dp), contiguous, intent(in) :: y(:,:)       !! area times first-level gradient [m2], (4,n)
-    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_measure, (5,n)
+    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_measure, (4,n)
     real(dp), contiguous, intent(inout) :: h(:,:)    !! smoothed gradient, (4,n)
-    real(dp), contiguous, intent(inout) :: mean(:,:) !! smoothed, (5,n)
+    real(dp), contiguous, intent(inout) :: mean(:,:) !! smoothed, (4,n)
     integer :: l
 
     !$omp do schedule(static)
     do l = 1, size(h, 2)
-      call sum_tied(l, two_level%offset, two_level%cell, two_level%s, two_level%rest(l), y, weighed, &
+      call sum_both(l, two_level%offset, two_level%cell, two_level%s, two_level%rest, y, weighed, &
                     h(:, l), mean(:, l))
     end do
     !$omp end do
   end subroutine smooth_gradient_tied
 
   !> First Piola stress smoothed by the adjoint, that of the first level and that of the tie added.
-  subroutine smooth_stress_tied(two_level, tie, area, q, weighed, stretch, first, r, intact, held, &
-    loss)
+  subroutine smooth_stress_tied(two_level, tie, area, q, weighed, mean, stretch, first, r, intact, &
+    held, loss)
     type(two_level_t), intent(in) :: two_level       !! with symmetric weights
     type(tie_t), intent(in) :: tie
     real(dp), contiguous, intent(in) :: area(:)      !! cell areas [m2], (n)
     real(dp), contiguous, intent(in) :: q(:,:)       !! area times first Piola stress [N m/m], (4,n)
-    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_means, (5,n)
+    real(dp), contiguous, intent(in) :: weighed(:,:) !! of tie_means, (4,n)
+    real(dp), contiguous, intent(in) :: mean(:,:)    !! of smooth_gradient_tied, (4,n)
     real(dp), contiguous, intent(in) :: stretch(:,:) !! of the first level, (6,n)
     real(dp), contiguous, intent(in) :: first(:,:)   !! Piola stress of the first level [Pa], (4,n)
     real(dp), contiguous, intent(inout) :: r(:,:)    !! sum of all [Pa], (4,n)
     ! Those of a motion; without them all soil is intact, and nothing is lost.
     real(dp), contiguous, intent(in), optional :: intact(:)    !! how intact the soil is, (n)
-    real(dp), contiguous, intent(inout), optional :: held(:,:) !! slopes of the energy [Pa] and stretch,
-                                                               !! those of one step ago in, (6,n)
+    real(dp), contiguous, intent(inout), optional :: held(:,:) !! slopes of the energy [Pa] and
+                                                               !! stretch, one step ago in, (6,n)
     real(dp), contiguous, intent(inout), optional :: loss(:)   !! sum of energy lost by softening
                                                                !! [J/m], (n)
-    real(dp) :: around(5), slope(3), piola(4), whole
+    real(dp) :: around(4), slope(3), piola(4), weight
     integer :: l
 
-    whole = 1.0_dp
     !$omp do schedule(static)
     do l = 1, size(r, 2)
-      call sum_tied(l, two_level%offset, two_level%cell, two_level%s, two_level%rest(l), q, weighed, &
+      call sum_both(l, two_level%offset, two_level%cell, two_level%s, two_level%rest, q, weighed, &
                     r(:, l), around)
-      if (present(intact)) whole = intact(l)
-      slope = tie_slopes(whole*tie%bulk(l), whole*tie%shear(l), stretch(:, l), around)
+      weight = tie%shear(l)
+      if (present(intact)) weight = weight*intact(l)
+      slope = tie_slopes(weight, stretch(:, l), mean(1, l), around)
       call stretch_piola(stretch(:, l), slope, piola)
       r(:, l) = r(:, l) + first(:, l) + piola
       if (.not. present(held)) cycle
-      ! Work of the forces at both ends of the step, less the change of the energy 1/2 slope.stretch,
-      ! which summed over all nodes is nothing where no weight changes.
+      ! Work of the forces at both ends of the step, less the change of the energy 1/2 slope.U: over
+      ! all nodes this is nothing where no weight changes.
       loss(l) = loss(l) + 0.5_dp*area(l)*(dot_product(held(1:3, l), stretch(1:3, l)) &
         - dot_product(slope, held(4:6, l)))
       held(1:3, l) = slope
@@ -108,24 +109,33 @@ contains
     !$omp end do
   end subroutine smooth_stress_tied
 
-  !> Both sums of one cell, on plain arrays.
-  pure subroutine sum_tied(l, offset, cell, s, rest, from, weighed, to, mean)
+  !> The gather below of one cell, of two fields at once.
+  pure subroutine sum_both(l, offset, cell, s, rest, one, two, to_one, to_two)
     integer, intent(in) :: l, offset(*), cell(*)
     real(sp), intent(in) :: s(*)
-    real(dp), intent(in) :: rest, from(4,*), weighed(5,*)
-    real(dp), intent(out) :: to(4), mean(5)
-    real(dp) :: weight
-    integer :: k, c
+    real(dp), intent(in) :: rest(*), one(4,*), two(4,*)
+    real(dp), intent(out) :: to_one(4), to_two(4)
+    real(dp) :: even_one(4), odd_one(4), even_two(4), odd_two(4)
+    integer :: k, last
 
-    to = rest*from(:, l)
-    mean = rest*weighed(:, l)
-    do k = offset(l), offset(l+1) - 1
-      c = cell(k)
-      weight = real(s(k), dp)
-      to = to + weight*from(:, c)
-      mean = mean + weight*weighed(:, c)
+    even_one = rest(l)*one(:, l)
+    even_two = rest(l)*two(:, l)
+    odd_one = 0.0_dp
+    odd_two = 0.0_dp
+    last = offset(l+1) - 1
+    do k = offset(l), last - 1, 2
+      even_one = even_one + real(s(k), dp)*one(:, cell(k))
+      even_two = even_two + real(s(k), dp)*two(:, cell(k))
+      odd_one = odd_one + real(s(k+1), dp)*one(:, cell(k+1))
+      odd_two = odd_two + real(s(k+1), dp)*two(:, cell(k+1))
     end do
-  end subroutine sum_tied
+    if (mod(last - offset(l), 2) == 0) then
+      even_one = even_one + real(s(last), dp)*one(:, cell(last))
+      even_two = even_two + real(s(last), dp)*two(:, cell(last))
+    end if
+    to_one = even_one + odd_one
+    to_two = even_two + odd_two
+  end subroutine sum_both
 
   !> The gather with symmetric weights, on plain arrays. Two entries at a time, in sums of their
   !> own, so that an addition need not wait for the one before.

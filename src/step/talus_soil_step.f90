@@ -36,8 +36,8 @@ module talus_soil_step
     real(dp), allocatable :: stabilising(:,:) !! force of the stabilisation [N/m], (2,n) or (2,0)
     ! What ties the levels, (:,n) or (:,0); see talus_tie_step.
     real(dp), allocatable :: stretch(:,:)     !! of the first level, 6 rows
-    real(dp), allocatable :: weighed(:,:)     !! area times weight, that times stretch, 5 rows
-    real(dp), allocatable :: mean(:,:)        !! the same, smoothed, 5 rows
+    real(dp), allocatable :: weighed(:,:)     !! area times weight, that times stretch, 4 rows
+    real(dp), allocatable :: mean(:,:)        !! the same, smoothed, 4 rows
     real(dp), allocatable :: force(:,:)       !! out-of-balance force [N/m], (2,n)
     real(dp), allocatable :: pull(:,:)        !! less damping, for a consistent mass, (2,n) or (2,0)
   end type work_t
@@ -69,7 +69,7 @@ contains
     allocate (work%stabilising(2, merge(disc%n, 0, disc%stabilised)), source=0.0_dp)
     allocate (work%drive(4, merge(disc%n, 0, disc%damage_only)), source=0.0_dp)
     associate (tied => merge(disc%n, 0, disc%tied))
-      allocate (work%stretch(6, tied), work%weighed(5, tied), work%mean(5, tied), source=0.0_dp)
+      allocate (work%stretch(6, tied), work%weighed(4, tied), work%mean(4, tied), source=0.0_dp)
     end associate
     allocate (work%pull(2, 0))
   end subroutine work_allocate
@@ -204,7 +204,7 @@ contains
         call tie_measure(disc%tie, disc%dual%area, work%y, work%stretch, work%weighed, f, stiffness, &
           intact, between, between_old)
         call smooth_gradient_tied(disc%two_level, work%y, work%weighed, work%h, work%mean)
-        call tie_means(work%mean, work%weighed)
+        call tie_means(disc%tie, work%mean, work%weighed)
       else
         call smooth_gradient(disc%two_level, work%y, work%h)
       end if
@@ -233,8 +233,8 @@ contains
         if (disc%tied) then
           call residual_gather_levels(disc%stabilise, area, u, work%y, scale, before, between, &
             between_old, work%h, work%q, work%stabilising, energy, loss)
-          call smooth_stress_tied(disc%two_level, disc%tie, area, work%q, work%weighed, work%stretch, &
-            work%h, work%y, intact, tied, loss)
+          call smooth_stress_tied(disc%two_level, disc%tie, area, work%q, work%weighed, work%mean, &
+            work%stretch, work%h, work%y, intact, tied, loss)
         else
           if (disc%stabilised) call residual_gather_levels(disc%stabilise, area, u, work%y, scale, &
             before, scale, before, work%h, work%q, work%stabilising, energy, loss)

@@ -123,6 +123,7 @@ contains
     odd_one = 0.0_dp
     odd_two = 0.0_dp
     last = offset(l+1) - 1
+    !GCC$ unroll 2
     do k = offset(l), last - 1, 2
       even_one = even_one + real(s(k), dp)*one(:, cell(k))
       even_two = even_two + real(s(k), dp)*two(:, cell(k))

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The tie of the levels (src/THEORY.md (4.10b)): intact soil resists what the second level does not
-!> see of the first by its own elastic moduli. That of a pair in shear is the geometric mean of both.
+!> see of the first by its own elastic moduli. Both ends of a pair have the same.
 module talus_tie
   use talus_kinds, only: dp
   implicit none

@@ -36,11 +36,13 @@ module talus_two_level
 
 contains
 
-  !> Build the weights.
-  subroutine two_level_build(two_level, x, area, length, weights, status)
+  !> Build the weights. They do not reach from one kind of soil to another: there strain jumps, and
+  !> a mean of both is that of neither. Those of the kernel (weights_rk) know nothing of kinds.
+  subroutine two_level_build(two_level, x, area, kind, length, weights, status)
     type(two_level_t), intent(out) :: two_level
     real(dp), contiguous, intent(in) :: x(:,:) !! nodes [m], (2,n)
     real(dp), intent(in) :: area(:) !! cell areas [m2], (n)
+    integer, intent(in) :: kind(:)  !! of elastic soil at each node, (n)
     real(dp), intent(in) :: length  !! ell: support radius of the weights [m]
     integer, intent(in) :: weights  !! one of weights_*
     type(status_t), intent(inout) :: status
@@ -52,6 +54,7 @@ contains
     call cell_list_build(list, x, support)
     call cell_list_supports(list, x, two_level%offset, two_level%cell, status)
     if (status_failed(status)) return
+    if (weights /= weights_rk) call keep_alike(two_level, kind)
     allocate (weight(size(two_level%cell)))
     select case (weights)
     case (weights_rk)
@@ -68,6 +71,26 @@ contains
       call move_alloc(weight, two_level%plain)
     end if
   end subroutine two_level_build
+
+  !> Drop the pairs of different kinds.
+  pure subroutine keep_alike(two_level, kind)
+    type(two_level_t), intent(inout) :: two_level
+    integer, intent(in) :: kind(:)
+    integer :: l, first, last, kept
+
+    kept = 0
+    first = 1
+    do l = 1, size(kind)
+      last = two_level%offset(l+1) - 1
+      associate (near => pack(two_level%cell(first:last), kind(two_level%cell(first:last)) == kind(l)))
+        two_level%cell(kept+1:kept+size(near)) = near
+        kept = kept + size(near)
+      end associate
+      first = last + 1
+      two_level%offset(l+1) = kept + 1
+    end do
+    two_level%cell = two_level%cell(:kept)
+  end subroutine keep_alike
 
   !> Kernel values of all pairs.
   subroutine fill_kernel(two_level, x, length, weight)

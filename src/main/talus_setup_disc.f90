@@ -82,8 +82,8 @@ contains
       if (status_failed(status)) return
       if (deck%smoothing%weights == 'rk') weights = weights_rk
       if (deck%smoothing%weights == 'area') weights = weights_area
-      call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, deck%smoothing%length, &
-                           weights, status)
+      call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, elastic_kind(ground, disc%soil), &
+                           deck%smoothing%length, weights, status)
     end if
     disc%stabilised = deck%smoothing%stabilisation > 0.0_dp
     disc%floor = deck%smoothing%stabilisation_floor
@@ -96,6 +96,22 @@ contains
       .and. deck%smoothing%elastic_strain == 'local'
     if (disc%tied) call tie_build(disc%tie, modulus, ground%law(disc%soil)%elastic%poisson_ratio)
   end subroutine build_smoothing
+
+  !> The first soil with the same elastic moduli, at each node.
+  pure function elastic_kind(ground, soil) result(kind)
+    type(ground_t), intent(in) :: ground
+    integer, intent(in) :: soil(:) !! of each node, (n)
+    integer :: kind(size(soil))
+    integer :: first(size(ground%law)), k
+
+    do k = 1, size(first)
+      associate (law => ground%law)
+        first(k) = findloc(abs(law%elastic%youngs_modulus - law(k)%elastic%youngs_modulus) <= 0.0_dp &
+          .and. abs(law%elastic%poisson_ratio - law(k)%elastic%poisson_ratio) <= 0.0_dp, .true., dim=1)
+      end associate
+    end do
+    kind = first(soil)
+  end function elastic_kind
 
   !> Nodes and the grid they come with.
   subroutine make_mesh(deck, mesh, status)

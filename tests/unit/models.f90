@@ -78,7 +78,7 @@ contains
     disc%two_levels = square%smoothing > 0.0_dp
     disc%damage_only = square%damage_only
     if (disc%two_levels) call two_level_build(disc%two_level, disc%mesh%x, disc%dual%area, &
-      square%smoothing*spacing, square%weights, status)
+      disc%soil, square%smoothing*spacing, square%weights, status)
     disc%stabilised = square%stabilisation > 0.0_dp
     disc%floor = 0.02_dp
     modulus = ground%law(disc%soil)%elastic%youngs_modulus

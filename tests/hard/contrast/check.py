@@ -71,6 +71,11 @@ def weight(spacing, change=(), name="weight"):
     return run, balanced, run.field("stress", snapshot=balanced)[:, 1], WEIGHT * (y - HEIGHT)
 
 
+def acts(run, snapshot):
+    """The vertical stress that carries the load."""
+    return run.field("stress_acting", snapshot=snapshot)[:, 1]
+
+
 def row_averages(y, stress):
     """Heights of the rows between the ends, and stress there averaged over three rows by 1/4, 1/2, 1/4."""
     rows = np.unique(np.round(y, 6))
@@ -95,6 +100,15 @@ def weights(spacings):
     case.target("stress averaged over neighbouring rows: largest error over rho g H", off, 0.05, "our own")
     lost = abs(float(run.summary["energy_error"]))
     case.target("energy error of the dynamic stage", lost, 1e-3, "limit", asked=True)
+    two, balanced, *_ = weight(
+        spacing, [("levels = 1", f"levels = 2\n  length = {4 * spacing}")], name="weight_two"
+    )
+    case.study("weight, two levels, ell = 4 h", two, spacing, relative(two.area, acts(two, balanced), exact))
+    off = two.field("displacement", snapshot=balanced)[top, 1].mean() / sunk[top].mean() - 1
+    what = "two levels, ell = 4 h: settlement of the top over that at one, less one"
+    case.target(what, abs(off), 1e-4, "our own: elastic soil deforms as at one level")
+    lost = abs(float(two.summary["energy_error"]))
+    case.target("energy error of the dynamic stage, two levels", lost, 1e-3, "limit")
     largest = np.abs(stress - exact).max() / (WEIGHT * HEIGHT)
     case.note(
         "At a jump of stiffness stress alternates from row to row; the stabilisation, which carries a "

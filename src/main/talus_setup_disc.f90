@@ -68,7 +68,7 @@ contains
     real(dp), intent(in) :: spacing(:) !! of the nodes [m], (n)
     type(disc_t), intent(inout) :: disc
     type(status_t), intent(inout) :: status
-    real(dp), allocatable :: modulus(:)
+    real(dp), allocatable :: modulus(:), poisson(:)
     integer :: weights
 
     weights = weights_symmetric
@@ -94,7 +94,9 @@ contains
                          deck%smoothing%level_stiffness)
     disc%tied = disc%two_levels .and. .not. disc%damage_only .and. weights == weights_symmetric &
       .and. deck%smoothing%elastic_strain == 'local'
-    if (disc%tied) call tie_build(disc%tie, modulus, ground%law(disc%soil)%elastic%poisson_ratio)
+    if (.not. disc%tied) return
+    poisson = ground%law(disc%soil)%elastic%poisson_ratio
+    call tie_build(disc%tie, modulus, poisson)
   end subroutine build_smoothing
 
   !> The first soil with the same elastic moduli, at each node.

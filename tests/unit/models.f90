@@ -61,7 +61,7 @@ contains
     type(ground_t), intent(in) :: ground
     type(disc_t), intent(out) :: disc
     type(status_t) :: status
-    real(dp), allocatable :: support(:), modulus(:)
+    real(dp), allocatable :: support(:), modulus(:), poisson(:)
     real(dp) :: spacing
 
     spacing = square%side/real(square%nodes - 1, dp)
@@ -86,7 +86,8 @@ contains
       square%stabilisation, disc%two_levels .and. .not. disc%damage_only, square%level_stiffness)
     disc%tied = disc%stabilised .and. disc%two_levels .and. .not. disc%damage_only &
       .and. square%weights == weights_symmetric .and. .not. square%smoothed
-    if (disc%tied) call tie_build(disc%tie, modulus, ground%law(disc%soil)%elastic%poisson_ratio)
+    poisson = ground%law(disc%soil)%elastic%poisson_ratio
+    if (disc%tied) call tie_build(disc%tie, modulus, poisson)
     if (status_failed(status)) error stop 'square_disc failed'
   end subroutine square_disc
 

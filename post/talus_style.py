@@ -49,6 +49,7 @@ LOOKS = {
     "displacement": Look("Displacement", r"$|u|$", MOVED),
     "velocity": Look("Velocity", r"$|v|$", MOVED),
     "stress": Look("Stress", r"$\sigma$", "RdBu_r", True),
+    "stress_acting": Look("Stress that acts", r"$\sigma$", "RdBu_r", True),
     "strain": Look("Strain", r"$\varepsilon$", "RdBu_r", True),
     "plastic_strain": Look("Equivalent plastic strain", r"$\bar\varepsilon^p$", DAMAGED),
     "damage": Look("Damage", r"$D$", DAMAGED),

@@ -5,7 +5,8 @@
 !> F of the first level, does, and vanishes in every affine motion. Its energy is kappa |r|^2/2,
 !>   kappa = alpha_s E (A_I + A_K)/(8 |X_K - X_I|^2).
 !> The second level does not see how F varies within its length. There the difference of the F of both
-!> levels has the energy c |F_1 - F|^2/2 at a node, c = alpha_l E A.
+!> levels has the energy c |F_1 - F|^2/2 at a node, c = alpha_l E A; intact soil has its own moduli there
+!> instead (talus_tie).
 module talus_stabilise
   use talus_kinds, only: dp
   use talus_dual_cells, only: dual_t
@@ -18,7 +19,7 @@ module talus_stabilise
     integer, allocatable :: node(:)      !! other node of the pair
     real(dp), allocatable :: reach(:,:)  !! X_K - X_I [m], (2,np)
     real(dp), allocatable :: stiffness(:) !! kappa of the intact soil [N/m per m]
-    real(dp), allocatable :: level(:)    !! c of the intact soil [N], (n); (0) with one level
+    real(dp), allocatable :: level(:)    !! c over what is left and not intact [N], (n); (0) with one level
   end type stabilise_t
 
 contains

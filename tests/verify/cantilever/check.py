@@ -102,7 +102,8 @@ def same(name, spacings, length):
     """Errors at two levels, which are those of one level."""
     found = errors(f"two levels, {name}", spacings, length)
     off = np.abs(found / one[: len(found)] - 1).max()
-    case.target(f"two levels, {name}: error over that at one level, less one", off, 1e-4, "our own: relaxation's tolerance")
+    what = f"two levels, {name}: error over that at one level, less one"
+    case.target(what, off, 1e-4, "our own: relaxation's tolerance")
     return found
 
 
@@ -136,7 +137,8 @@ case.note(
     "worth more there. The next two have 1.93 and 1.96."
 )
 for ratio in (3, 4) if case.full else (4,):
-    same("ell = {} h".format(ratio), SPACINGS[: 3 if case.full else 2], lambda spacing, ratio=ratio: ratio * spacing)
+    spacings = SPACINGS[: 3 if case.full else 2]
+    same(f"ell = {ratio} h", spacings, lambda spacing, ratio=ratio: ratio * spacing)
 if case.full:
     two = same("ell = 3 D/4 fixed", SPACINGS, lambda spacing: 0.75 * DEPTH)
     case.target(

@@ -5,7 +5,7 @@ module talus_deck_check_soil
   use talus_const, only: deg
   use talus_text, only: text_of
   use talus_deck_messages, only: messages_t
-  use talus_deck_types, only: deck_t, soil_t, deck_given, deck_exceeds, deck_soil_index, &
+  use talus_deck_types, only: deck_t, soil_t, smoothing_t, deck_given, deck_exceeds, deck_soil_index, &
     deck_water_index, deck_damage_index
   use talus_deck_store, only: store_t, store_sections, store_is_wrong
   use talus_deck_extent, only: extent_t, extent_of, extent_holds
@@ -41,6 +41,7 @@ contains
         if (soil%plasticity == 'drucker_prager') then
           call check_strength(store, at(i), soil, messages)
           call check_softening(store, at(i), soil, deck%smoothing%levels, messages)
+          call check_closure(store, at(i), soil, deck%smoothing, messages)
         end if
         call check_suction(store, at(i), soil, deck, messages)
       end associate
@@ -155,6 +156,24 @@ contains
       end if
     end if
   end subroutine check_strength
+
+  !> Soil that closes again has to open without stress, and by its own volume: that of two levels
+  !! counts what opened within their length, for good where the neighbours have left.
+  subroutine check_closure(store, section, soil, smoothing, messages)
+    type(store_t), intent(in) :: store
+    integer, intent(in) :: section
+    type(soil_t), intent(in) :: soil
+    type(smoothing_t), intent(in) :: smoothing
+    type(messages_t), intent(inout) :: messages
+
+    if (.not. soil%crack_closure) return
+    if (.not. deck_given(soil%tension_cutoff) .or. deck_exceeds(soil%tension_cutoff, 0.0_dp)) &
+      call complain(store, section, 'crack_closure', 'tension would be kept while it closes', &
+                    messages, 'tension_cutoff = 0')
+    if (smoothing%levels > 1 .and. smoothing%acts_on /= 'damage_only') &
+      call complain(store, section, 'crack_closure', 'at two levels soil beside a crack counts '// &
+                    'as open, too', messages, '&smoothing levels = 1')
+  end subroutine check_closure
 
   subroutine check_softening(store, section, soil, levels, messages)
     type(store_t), intent(in) :: store

@@ -130,6 +130,7 @@ contains
     call get(store, s, 'dilation_angle', soil%dilation_angle)
     call get(store, s, 'fit', soil%fit)
     call get(store, s, 'tension_cutoff', soil%tension_cutoff)
+    call get(store, s, 'crack_closure', soil%crack_closure)
     call get(store, s, 'dilation_limit', soil%dilation_limit)
     call get(store, s, 'softening', soil%softening)
     call get(store, s, 'softening_strain', soil%softening_strain)

@@ -52,6 +52,9 @@ contains
              plastic)
     call key(t, 'tension_cutoff', 'real', 'Pa', '', '[0, 1e12]', &
              'Largest mean tensile stress; absent: the apex of the cone.', plastic)
+    call key(t, 'crack_closure', 'logical', '', '.false.', '', &
+             'Soil that opened at tension_cutoff = 0 bears pressure again only when it has closed; '// &
+             'false: at once, so that soil that shakes or flows swells.', plastic)
     call key(t, 'dilation_limit', 'real', '', '', '(0, 1e3]', &
              'Equivalent plastic strain at which dilation stops; absent: never.', plastic)
   end subroutine add_strength

@@ -51,6 +51,7 @@ module talus_deck_types
     real(dp) :: cohesion, friction_angle, dilation_angle
     character(:), allocatable :: fit
     real(dp) :: tension_cutoff, dilation_limit
+    logical :: crack_closure
     character(:), allocatable :: softening
     real(dp) :: softening_strain
     real(dp) :: residual_cohesion, residual_friction_angle, residual_dilation_angle

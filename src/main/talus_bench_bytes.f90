@@ -79,6 +79,7 @@ contains
     bytes = 220.0_dp
     associate (state => session%state)
       if (allocated(state%history)) bytes = bytes + 16.0_dp*real(size(state%history, 1), dp)
+      if (allocated(state%opening)) bytes = bytes + 16.0_dp
       if (allocated(state%strain)) bytes = bytes + 64.0_dp
       if (allocated(state%f_drive)) bytes = bytes + 96.0_dp
       if (allocated(state%stiffness)) bytes = bytes + 24.0_dp

@@ -95,11 +95,12 @@ contains
     integer :: numbers
 
     numbers = 0
-    ! Displacement, velocity, stress, strain; that which acts; plastic strain; damage.
+    ! Displacement, velocity, stress, strain; that which acts; plastic strain; opening; damage.
     if (session%soil_moves) then
       numbers = numbers + 12
       if (session%disc%two_levels .and. .not. session%disc%damage_only) numbers = numbers + 4
       if (allocated(session%state%history)) numbers = numbers + 1
+      if (allocated(session%state%opening)) numbers = numbers + 1
       if (any(session%ground%law%damage%driver /= 0)) numbers = numbers + 1
     end if
     ! Pressure, saturation, suction, porosity and velocity.
@@ -123,7 +124,8 @@ contains
     total = bytes(state%volume_work) &
       + bytes(state%u) + bytes(state%u_zero) + bytes(state%v) + bytes(state%acceleration) &
       + bytes(state%f) + bytes(state%f_drive) + bytes(state%stress) + bytes(state%strain) &
-      + bytes(state%history) + bytes(state%stiffness) + bytes(state%stiffness_old) &
+      + bytes(state%history) + bytes(state%opening) + bytes(state%stiffness) &
+      + bytes(state%stiffness_old) &
       + bytes(state%settled) + bytes(state%stabilising) + bytes(state%stabilising_lost) &
       + bytes(state%intact) + bytes(state%between) &
       + bytes(state%between_old) + bytes(state%tied) + bytes(state%damped) &

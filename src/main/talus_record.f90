@@ -286,6 +286,8 @@ contains
       scalar = state%history(history_eqps, :)
       call snapshot_field(result, 'plastic_strain', '1', 'equivalent plastic strain', scalar, &
                           status)
+      if (allocated(state%opening)) call snapshot_field(result, 'opening', '1', &
+        'volumetric strain that soil is open by', state%opening, status)
       if (all(session%ground%law%damage%driver == 0)) return
       scalar = state%history(history_damage, :)
       call snapshot_field(result, 'damage', '1', 'damage, 0 intact', scalar, status)

@@ -87,7 +87,10 @@ contains
     law%plasticity = merge(plasticity_drucker_prager, plasticity_none, &
                            soil%plasticity == 'drucker_prager')
     law%stress = merge(stress_bishop, stress_net, soil%stress == 'bishop')
-    if (law%plasticity == plasticity_drucker_prager) call fill_strength(soil, law%strength)
+    if (law%plasticity == plasticity_drucker_prager) then
+      call fill_strength(soil, law%strength)
+      law%closes = soil%crack_closure
+    end if
     select case (soil%suction_strain)
     case ('constant')
       law%swelling%kind = suction_strain_constant

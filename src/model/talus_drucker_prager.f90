@@ -11,6 +11,7 @@ module talus_drucker_prager
   implicit none
   private
   public :: cone_t, cones_t, cone_shape, cones_set, drucker_prager_returns, drucker_prager_excess
+  public :: openings_close, openings_after
   public :: secant_shear_ratios, stress_roots
 
   !> Fits of the cone to the Mohr-Coulomb pyramid.
@@ -121,6 +122,38 @@ contains
       stress(i, 4) = stress(i, 4) + change*stress(i, 4)
     end do
   end subroutine drucker_prager_returns
+
+  !> Begin the step of soil that remembers how far it has opened (src/THEORY.md (3.7a)): what its
+  !! grains are apart of each other is no compression yet, and soil that is open does not dilate.
+  pure subroutine openings_close(n, bulk, opening, stress, alpha_psi)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: bulk                     !! K [Pa]
+    real(dp), intent(in) :: opening(soil_points)     !! volumetric strain it is open by [-], >= 0
+    real(dp), intent(inout) :: stress(soil_points,4) !! trial stress [Pa], tension +
+    real(dp), intent(inout) :: alpha_psi(soil_points) !! see cone_t
+    integer :: i
+
+    do i = 1, n
+      stress(i, 1:3) = stress(i, 1:3) + bulk*opening(i)
+      if (opening(i) > 0.0_dp) alpha_psi(i) = 0.0_dp
+    end do
+  end subroutine openings_close
+
+  !> End the step: how far the soil is open now, by the trial stress that openings_close left. What
+  !! that stress has of volume beyond dilation is open; the largest mean stress has to be zero.
+  pure subroutine openings_after(n, cones, bulk, i1, deqps, opening)
+    integer, intent(in) :: n
+    type(cones_t), intent(in) :: cones
+    real(dp), intent(in) :: bulk                     !! K [Pa]
+    real(dp), intent(in) :: i1(soil_points)          !! of that trial stress [Pa]
+    real(dp), intent(in) :: deqps(soil_points)       !! of drucker_prager_returns
+    real(dp), intent(inout) :: opening(soil_points)  !! volumetric strain [-], >= 0
+    integer :: i
+
+    do i = 1, n
+      opening(i) = max(0.0_dp, i1(i)*third/bulk - 3.0_dp*sqrt3*cones%alpha_psi(i)*deqps(i))
+    end do
+  end subroutine openings_after
 
   !> Whether n trial stresses lie outside their cones: > 0 outside, not a number where the stress is
   !> not, else inside.

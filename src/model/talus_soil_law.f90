@@ -15,7 +15,8 @@ module talus_soil_law
   use talus_objective, only: objective_increments, tensors_rotate
   use talus_elastic, only: elastic_t, elastic_prepare, elastic_adds, elastic_energies, &
     elastic_bilinears
-  use talus_drucker_prager, only: cones_t, drucker_prager_returns, secant_shear_ratios
+  use talus_drucker_prager, only: cones_t, drucker_prager_returns, secant_shear_ratios, &
+    openings_close, openings_after
   use talus_strength, only: strength_t, strength_prepare, strength_cones, strength_excess, &
     suction_strength_none
   use talus_suction_strain, only: suction_strain_t, suction_strain_prepare, &
@@ -48,6 +49,7 @@ module talus_soil_law
     integer :: plasticity = plasticity_none !! one of plasticity_*
     integer :: stress = stress_net          !! one of stress_*
     logical :: own_strain = .true.          !! false: strain_advance drives the strain from outside
+    logical :: closes = .false.             !! remembers how far it has opened at zero mean stress
     type(elastic_t) :: elastic
     type(strength_t) :: strength
     type(suction_strain_t) :: swelling
@@ -71,6 +73,9 @@ contains
         law%swelling%kind /= suction_strain_none) call status_set(status, status_deck, &
         'stress = bishop counts suction already: suction_strength and suction_strain must be none')
     end if
+    if (law%closes .and. (law%plasticity == plasticity_none .or. &
+      abs(law%strength%tension_cutoff) > 0.0_dp)) call status_set(status, status_deck, &
+      'crack_closure needs plasticity with tension_cutoff = 0')
     if (law%damage%driver == driver_plastic_strain .and. law%plasticity == plasticity_none) &
       call status_set(status, status_deck, 'driver = plastic_strain needs plasticity')
   end subroutine soil_law_prepare
@@ -144,7 +149,7 @@ contains
   !! On a failure (ierr /= 0) the state of the point is not to be used further. The stiffness
   !! scale is (1 - D) times the secant shear ratio, between 0 and 1; its floor is the caller's.
   pure subroutine soil_returns(law, n, det_mid, volume, suction, saturation, before, strain, &
-    effective, history, stress, stiffness_scale, energy_old, energy_new, ierr)
+    effective, history, opening, stress, stiffness_scale, energy_old, energy_new, ierr)
     type(soil_law_t), intent(in) :: law              !! prepared
     integer, intent(in) :: n
     real(dp), intent(in) :: det_mid(soil_points)     !! of soil_trial
@@ -155,6 +160,8 @@ contains
     real(dp), intent(in) :: strain(soil_points,4)    !! total strain after [-]
     real(dp), intent(inout) :: effective(soil_points,4) !! trial in, undamaged stress out [Pa]
     real(dp), intent(inout) :: history(soil_points,history_size) !! see history_*
+    real(dp), intent(inout) :: opening(soil_points)  !! volumetric strain the soil is open by [-], >= 0;
+                                                     !! used where the law closes
     real(dp), intent(inout) :: stress(soil_points,4) !! damaged, without pore pressure [Pa]
     real(dp), intent(inout) :: stiffness_scale(soil_points) !! stiffness left over elastic [-]
     real(dp), intent(inout) :: energy_old(soil_points) !! stored before [J/m3]; set with damage only
@@ -166,7 +173,7 @@ contains
     stiffness_scale(:n) = 1.0_dp
     trial(:n, :) = effective(:n, :)
     if (law%plasticity == plasticity_drucker_prager) call return_to_cone(law, n, suction, &
-      saturation, effective, history, stiffness_scale)
+      saturation, effective, history, opening, stiffness_scale)
     stress(:n, :) = effective(:n, :)
     old(:n, :) = before(:n, :)
     if (law%damage%driver /= driver_none) call wear(law, n, volume, strain, history, old, stress, &
@@ -186,22 +193,28 @@ contains
   !! With the split `deviatoric`, damage leaves the full mean pressure but only (1 - D) of the
   !! shear stress that dilation is paid from. Dilation therefore fades with (1 - D) there: at
   !! full dilation a damaged point would create energy.
-  pure subroutine return_to_cone(law, n, suction, saturation, effective, history, left)
+  pure subroutine return_to_cone(law, n, suction, saturation, effective, history, opening, left)
     type(soil_law_t), intent(in) :: law
     integer, intent(in) :: n
     real(dp), intent(in) :: suction(soil_points)        !! s = -p_w [Pa]
     real(dp), intent(in) :: saturation(soil_points)     !! effective saturation [-]
     real(dp), intent(inout) :: effective(soil_points,4) !! trial in, returned out [Pa]
     real(dp), intent(inout) :: history(soil_points,history_size)
+    real(dp), intent(inout) :: opening(soil_points)     !! see soil_returns [-]
     real(dp), intent(inout) :: left(soil_points)        !! secant over elastic shear stiffness [-]
     type(cones_t) :: cones
-    real(dp), dimension(soil_points) :: deqps, root
+    real(dp), dimension(soil_points) :: deqps, root, i1
 
     call strength_cones(law%strength, n, history(:, history_eqps), suction, saturation, cones)
     if (law%damage%split == split_deviatoric .and. law%damage%driver /= driver_none) &
       cones%alpha_psi(:n) = cones%alpha_psi(:n)*(1.0_dp - history(:n, history_damage))
+    if (law%closes) then
+      call openings_close(n, law%elastic%bulk, opening, effective, cones%alpha_psi)
+      i1(:n) = effective(:n, 1) + effective(:n, 2) + effective(:n, 3)
+    end if
     call drucker_prager_returns(n, cones, law%elastic%shear, law%elastic%bulk, effective, deqps, &
                                 root)
+    if (law%closes) call openings_after(n, cones, law%elastic%bulk, i1, deqps, opening)
     history(:n, history_eqps) = history(:n, history_eqps) + deqps(:n)
     call secant_shear_ratios(n, law%elastic%shear, root, history(:, history_eqps), left)
   end subroutine return_to_cone

@@ -118,6 +118,7 @@ contains
     call field_2(x, 'stress', 'stress', state%stress, status)
     call field_2(x, 'strain', 'strain that drives damage', state%strain, status)
     call field_2(x, 'history', 'plasticity and damage', state%history, status)
+    call field_1(x, 'opening', 'crack closure', state%opening, status)
     call field_1(x, 'stiffness', 'stabilisation', state%stiffness, status)
     call field_1(x, 'stiffness_old', 'stabilisation', state%stiffness_old, status)
     if (.not. x%writes .and. allocated(state%stiffness)) then

@@ -36,6 +36,8 @@ module talus_state
     real(dp), allocatable :: stress(:,:)        !! undamaged, without pore pressure [Pa], (4,n)
     real(dp), allocatable :: strain(:,:)        !! total, where damage needs it, (4,n)
     real(dp), allocatable :: history(:,:)       !! see talus_soil_law, (5,n) or (2,n)
+    real(dp), allocatable :: opening(:)         !! volumetric strain soil is open by, where it closes
+                                                !! again, (n)
     real(dp), allocatable :: stiffness(:)       !! stiffness left over the elastic one, (n)
     real(dp), allocatable :: stiffness_old(:)   !! one step ago, (n)
     real(dp), allocatable :: settled(:)         !! plastic strain that counts as none, of (4.11)
@@ -106,6 +108,7 @@ contains
     if (strained .and. disc%damage_only) state%f_drive = state%f
     if (inelastic) allocate (state%history(merge(history_size, history_size_plastic, &
       any(ground%law%damage%driver /= 0)), n), source=0.0_dp)
+    if (any(ground%law%closes)) allocate (state%opening(n), source=0.0_dp)
     if (disc%stabilised) then
       allocate (state%stabilising(n), state%stabilising_lost(n), source=0.0_dp)
       allocate (state%stiffness(n), state%stiffness_old(n), source=1.0_dp)

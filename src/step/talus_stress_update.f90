@@ -169,7 +169,7 @@ contains
     end do
   end subroutine soften_settled
 
-  !> Whether each point of a block ever yielded or was damaged: > 0.
+  !> Whether each point of a block ever yielded, is open or was damaged: > 0.
   pure subroutine history_get(state, first, n, worn)
     type(state_t), intent(in) :: state
     integer, intent(in) :: first, n
@@ -186,6 +186,7 @@ contains
     else
       worn(:n) = state%history(history_eqps, first:first+n-1)
     end if
+    if (allocated(state%opening)) worn(:n) = max(worn(:n), state%opening(first:first+n-1))
   end subroutine history_get
 
   !> The points of a block that do not stay elastic: put side by side, returned, and put back.
@@ -204,7 +205,7 @@ contains
     integer, intent(inout) :: failed
     real(dp), dimension(soil_points,4) :: turned, total, trial, total_stress
     real(dp) :: history(soil_points,history_size)
-    real(dp), dimension(soil_points) :: middle, volume, pull, wet, scale, energy_old
+    real(dp), dimension(soil_points) :: middle, volume, pull, wet, opening, scale, energy_old
     integer :: code(soil_points), i, j, kept
 
     kept = 0
@@ -220,8 +221,9 @@ contains
       if (allocated(state%strain)) total(i, :) = strain(j, :)
       if (kept > 0) history(i, :kept) = state%history(:, first+j-1)
       history(i, kept+1:) = 0.0_dp
+      if (allocated(state%opening)) opening(i) = state%opening(first+j-1)
     end do
-    call soil_returns(law, m, middle, volume, pull, wet, turned, total, trial, history, &
+    call soil_returns(law, m, middle, volume, pull, wet, turned, total, trial, history, opening, &
                       total_stress, scale, energy_old, reduced, code)
     do i = 1, m
       j = list(i)
@@ -230,6 +232,7 @@ contains
       left(j) = scale(i)
       if (law%damage%driver /= driver_none) energy(j) = energy_old(i)
       if (kept > 0) state%history(:, first+j-1) = history(i, :kept)
+      if (allocated(state%opening)) state%opening(first+j-1) = opening(i)
       if (code(i) /= soil_ok) failed = max(failed, code(i)*size(state%volume_work) + first + j - 1)
     end do
   end subroutine return_block

@@ -48,13 +48,13 @@ def without(deck, gone, replace=()):
     return replace
 
 
-def split(deck, first):
+def split(deck, first, replace=(), stem=None):
     """The whole run, the run of its `first` stages, and that of the others from the saved state."""
-    stem = deck.split(".")[0]
+    stem = stem or deck.split(".")[0]
     _, parts = stages(deck)
-    whole = case.run(deck, name=stem)
-    head = case.run(deck, without(deck, parts[first:]), name=f"{stem}_head")
-    tail = case.run(deck, without(deck, parts[:first], start(deck, head)), name=f"{stem}_tail")
+    whole = case.run(deck, list(replace), name=stem)
+    head = case.run(deck, without(deck, parts[first:], replace), name=f"{stem}_head")
+    tail = case.run(deck, without(deck, parts[:first], [*replace, *start(deck, head)]), name=f"{stem}_tail")
     return whole, head, tail
 
 
@@ -127,6 +127,15 @@ for deck, first, what, spacing in (
                 "second run": (rest["time"], rest["energy_kinetic"], "--"),
             },
         )
+
+# Soil that remembers how far it is open.
+CLOSING = [
+    ("levels = 2  length = 0.9", "levels = 1"),
+    ("tension_cutoff = 0.0", "tension_cutoff = 0.0  crack_closure = .true."),
+]
+whole, _, tail = split("soil.nml", 2, CLOSING, "closing")
+case.target("soil that opens and closes: split run against whole run", difference(whole, tail), 0.0, BITS)
+case.check_true("some of it is open", whole.field("opening").max() > 0.01)
 
 # The water alone: between two runs with soil it hands on their soil; by itself it keeps none, and soil that
 # starts from it is at rest.

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from talus_result import ResultError
 from talus_style import GREY, INK, axis_label, display_units, finite_range, look_of
 
-FROM_ZERO = ("damage", "plastic_strain", "displacement", "velocity", "seepage_velocity")
+FROM_ZERO = ("damage", "plastic_strain", "opening", "displacement", "velocity", "seepage_velocity")
 
 
 class FieldScale:

@@ -123,8 +123,8 @@ contains
     end do
   end subroutine drucker_prager_returns
 
-  !> Begin the step of soil that remembers how far it has opened (src/THEORY.md (3.7a)): what its
-  !! grains are apart of each other is no compression yet, and soil that is open does not dilate.
+  !> Begin the step of soil that remembers how far it has opened (src/THEORY.md (3.7a)): while its
+  !! grains are apart nothing compresses them, and it does not dilate.
   pure subroutine openings_close(n, bulk, opening, stress, alpha_psi)
     integer, intent(in) :: n
     real(dp), intent(in) :: bulk                     !! K [Pa]
@@ -139,8 +139,8 @@ contains
     end do
   end subroutine openings_close
 
-  !> End the step: how far the soil is open now, by the trial stress that openings_close left. What
-  !! that stress has of volume beyond dilation is open; the largest mean stress has to be zero.
+  !> End the step: how far the soil is open now (src/THEORY.md (3.7b)), by the trial stress that
+  !! openings_close left. The largest mean stress has to be zero.
   pure subroutine openings_after(n, cones, bulk, i1, deqps, opening)
     integer, intent(in) :: n
     type(cones_t), intent(in) :: cones

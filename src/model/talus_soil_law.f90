@@ -160,7 +160,7 @@ contains
     real(dp), intent(in) :: strain(soil_points,4)    !! total strain after [-]
     real(dp), intent(inout) :: effective(soil_points,4) !! trial in, undamaged stress out [Pa]
     real(dp), intent(inout) :: history(soil_points,history_size) !! see history_*
-    real(dp), intent(inout) :: opening(soil_points)  !! volumetric strain the soil is open by [-], >= 0;
+    real(dp), intent(inout) :: opening(soil_points)  !! volumetric strain it is open by [-], >= 0;
                                                      !! used where the law closes
     real(dp), intent(inout) :: stress(soil_points,4) !! damaged, without pore pressure [Pa]
     real(dp), intent(inout) :: stiffness_scale(soil_points) !! stiffness left over elastic [-]

@@ -168,11 +168,12 @@ contains
 
     if (.not. soil%crack_closure) return
     if (.not. deck_given(soil%tension_cutoff) .or. deck_exceeds(soil%tension_cutoff, 0.0_dp)) &
-      call complain(store, section, 'crack_closure', 'tension would be kept while it closes', &
-                    messages, 'tension_cutoff = 0')
+      call complain(store, section, 'crack_closure', 'soil that closes again must open without '// &
+                    'tension', messages, 'tension_cutoff = 0')
     if (smoothing%levels > 1 .and. smoothing%acts_on /= 'damage_only') &
       call complain(store, section, 'crack_closure', 'at two levels soil beside a crack counts '// &
-                    'as open, too', messages, '&smoothing levels = 1')
+                    'as open, too', messages, &
+                    '&smoothing levels = 1, or acts_on = ''damage_only''')
   end subroutine check_closure
 
   subroutine check_softening(store, section, soil, levels, messages)

@@ -71,7 +71,10 @@ contains
     intact = ground
     do i = 1, size(intact%law)
       intact%law(i)%damage%driver = driver_none
-      if (.not. plastic) intact%law(i)%plasticity = plasticity_none
+      if (.not. plastic) then
+        intact%law(i)%plasticity = plasticity_none
+        intact%law(i)%closes = .false.
+      end if
       intact%law(i)%strength%softening = softening_none
       call soil_law_prepare(intact%law(i), status)
     end do

@@ -79,6 +79,10 @@ contains
     session%seepage%stride = restart%stride
     session%seepage%last = restart%last
     if (allocated(restart%mode)) session%motion%mode = restart%mode
+    ! A soil that closed in the earlier run and does not now is no longer open.
+    if (allocated(session%state%opening)) then
+      where (.not. session%ground%law(session%disc%soil)%closes) session%state%opening = 0.0_dp
+    end if
   end subroutine setup_restart
 
   !> True when a file has what every result has.

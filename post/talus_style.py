@@ -52,7 +52,7 @@ LOOKS = {
     "stress_acting": Look("Stress that acts", r"$\sigma$", "RdBu_r", True),
     "strain": Look("Strain", r"$\varepsilon$", "RdBu_r", True),
     "plastic_strain": Look("Equivalent plastic strain", r"$\bar\varepsilon^p$", DAMAGED),
-    "opening": Look("Opening (volumetric strain)", r"$o$", DAMAGED),
+    "opening": Look("Opening", r"$o$", DAMAGED),
     "damage": Look("Damage", r"$D$", DAMAGED),
     "pore_pressure": Look("Pore water pressure", r"$p_w$", WATER, split=True),
     "saturation": Look("Degree of saturation", r"$S_r$", "YlGnBu"),

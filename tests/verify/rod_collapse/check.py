@@ -3,28 +3,26 @@
 
 The failure line is the contour of the displacement (since the gate was taken away) of 1.5 mm in the
 reference configuration: 1.5 % of the height, five times the settlement rho g H^2/E of elastic rods, and the size of
-what a photograph of the experiment shows; how it was read there is not known to us. Those who digitised the points
-(Wyser et al. 2020, 2021) compare them with a horizontal displacement of 1 mm and with a displacement of 0.5 mm, in
-the places at the end; the line by these is told below. It is taken at the end, when nothing moves any more. The
-error is the largest distance of the five measured points from that line. The rods land on the table in front of the
-gate (`floor`): without it the toe falls on, the heap has no foot and the line goes on moving into the pile.
+what a photograph of the experiment shows; how it was read there is not known to us. The points are five of nine in
+the data files of Wyser et al., whose scripts compare them with a horizontal displacement of 1 mm (2020) and with a
+displacement of 0.5 mm (2021), in the places at the end; the line by these is told below. It is taken at the end,
+when nothing moves any more. The error is the largest distance of the five measured points from that line. The rods
+land on the table in front of the gate (`floor`): without it the toe falls on, the heap has no foot and the line goes
+on moving into the pile.
 
-Rods of the face peel off and come to lie apart. They bear pressure again only when they touch (`crack_closure`).
-Without that they bear it at once, where they are: each time they part and meet the heap swells, the more the finer
-the nodes, and the line does not settle as the spacing falls. With it the volume stays, as psi = 0 wants it, and the
-largest distance stays within half a millimetre from 20 nodes over the height on.
+Rods of the face peel off and come to lie apart. They bear pressure again only when they touch (`crack_closure`), so
+that the volume stays, as psi = 0 wants it, and the largest distance within half a millimetre from 20 nodes over the
+height on. Without that they bear it at once, where they are: each time they part and meet the heap swells.
 
 The stabilisation that stays in flowing soil is an elastic stiffness, which adds about stabilisation times
 stabilisation_floor times E to the strength for each unit of strain. At the default floor of 0.02 that is 840 Pa,
 near the strength at the bottom of the pile, rho g H tan(phi) = 936 Pa, for rods that flow by several units; here
-it is a tenth. It was taken after lines had been seen, but before crack_closure was there, which none was chosen by.
-Others are run below. At 0.0002 nodes begin to move by themselves.
+it is a tenth. This floor was chosen before crack_closure was there, after lines had been seen; others are run below.
 
-The two ends of the line answer to different things: friction and dilation move the upper one, the stress at rest
-and the moduli the lower one. At rest the whole pile yields already: between rigid walls the cone allows no stress
-ratio below (1 - sqrt(3) alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu). The computed line is flatter
-than the measured one, below it at the crest and above it at the toe by as much, so that no threshold and no friction
-brings it much nearer.
+Friction moves the upper part of the line, the moduli and the stress at rest its middle, and nothing of these its
+foot. At rest the whole pile yields already: between rigid walls the cone allows no stress ratio below
+(1 - sqrt(3) alpha)/(1 + 2 sqrt(3) alpha), and that is above nu/(1 - nu). The computed line is flatter than the
+measured one, below it at the crest and above it at the foot by as much, so that no threshold brings it much nearer.
 
 The kernel is purely material, so that the flowing rods (strains of several hundred per cent) are beyond what
 it should be trusted with, and the final surface is drawn, not judged.
@@ -47,8 +45,8 @@ case = Case(
     reference="Bui et al. 2008, experiment (failure_line.csv, final_surface.csv)",
 )
 HEIGHT, MOVED = 0.1, 1.5e-3
-MEASURED = np.loadtxt(case.folder / "failure_line.csv", delimiter=",", skiprows=2)
-SURFACE = np.loadtxt(case.folder / "final_surface.csv", delimiter=",", skiprows=2)
+MEASURED = np.loadtxt(case.folder / "failure_line.csv", delimiter=",", skiprows=3)
+SURFACE = np.loadtxt(case.folder / "final_surface.csv", delimiter=",", skiprows=3)
 FLOOR = "  where = 'all'\n  floor = 0.0\n  stages = 'collapse'\n"
 NO_FLOOR = "  where = 'bottom'\n  displacement = 'fixed'\n  stages = 'collapse'\n"
 PHI = 19.8
@@ -168,7 +166,7 @@ case.check(
     "psi = 0",
 )
 if not case.full:
-    case.check("failure line [m]", abs(apart).max(), 0.0081, "held; 5 mm are wanted at the finest spacing")
+    case.check("failure line [m]", abs(apart).max(), 0.0075, "held; 5 mm are wanted at the finest spacing")
 
 if case.full:
     case.target(
@@ -176,7 +174,7 @@ if case.full:
         abs(apart).max(),
         0.005,
         "S4: within 5 mm, at the finest spacing",
-        held=(0.0, 0.007),
+        held=(0.0, 0.006),
         asked=True,
     )
     fine = {
